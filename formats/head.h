@@ -1,0 +1,48 @@
+// HEAD: what a path-vertex buffer declares about itself, its channels and its metadata.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace psf::formats {
+
+// Scalar type of a stored component; values are those of the file.
+enum class Type : std::uint8_t { u8 = 1, u16 = 2, u32 = 3, u64 = 4, f16 = 5, f32 = 6, f64 = 7 };
+
+[[nodiscard]] std::size_t size_of(Type type);
+[[nodiscard]] std::string_view name_of(Type type);
+
+// plain: components are the value. octahedral: u16x2 that encodes a unit vector f32x3.
+enum class Encoding : std::uint8_t { plain = 0, octahedral = 1 };
+
+struct Channel {
+  std::string name;
+  Type type = Type::f32;
+  std::uint8_t components = 1;  // 1 to 16, as stored
+  Encoding encoding = Encoding::plain;
+
+  [[nodiscard]] std::size_t stride() const { return size_of(type) * components; }  // stored bytes a record
+  // Components of the value that a reader gets as floats: 3 for an octahedral channel.
+  [[nodiscard]] std::size_t decoded_components() const {
+    return encoding == Encoding::octahedral ? 3 : components;
+  }
+  bool operator==(const Channel&) const = default;
+};
+
+struct Head {
+  std::uint16_t major = 1;
+  std::uint16_t minor = 0;
+  std::uint32_t required_features = 0;
+  std::uint32_t optional_features = 0;
+  std::uint32_t chunk_capacity = 65536;  // most records a chunk, 1 to 2^24
+  std::vector<Channel> channels;         // 1 to 256, unique names
+  std::string metadata = "{}";           // a JSON object, UTF-8, at most 1 MiB; see metadata.h
+
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view channel) const;
+};
+
+}  // namespace psf::formats

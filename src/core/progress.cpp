@@ -1,0 +1,57 @@
+#include "core/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace psf::core {
+namespace {
+constexpr double kTerminalInterval = 0.1;  // seconds between two drawings of the bar
+constexpr double kLogInterval = 10;        // seconds between two lines where stderr is no terminal
+}  // namespace
+
+Progress::Progress(std::string what, std::size_t total, bool quiet)
+    : what_(std::move(what)), total_(total), quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1),
+      start_(Clock::now()), last_(start_) {}
+
+Progress::~Progress() { finish(); }
+
+void Progress::advance(std::size_t done, const std::string& note) {
+  if (quiet_ || total_ == 0) return;
+  const auto now = Clock::now();
+  const std::chrono::duration<double> since_last = now - last_;
+  const double interval = terminal_ ? kTerminalInterval : kLogInterval;
+  if (since_last.count() < interval && !(done == total_ && shown_)) return;
+  last_ = now;
+  shown_ = true;
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  const double fraction = static_cast<double>(done) / static_cast<double>(total_);
+  const std::string left =
+      done == 0 ? "" : format_seconds(elapsed * (1 - fraction) / fraction) + " left";
+  const std::string separator = note.empty() ? "" : ", ";
+  if (terminal_) {
+    constexpr int kWidth = 30;
+    const int filled = static_cast<int>(std::lround(fraction * kWidth));
+    fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3.0f}%  {}{}{}\033[K", what_, "", filled, "",
+               kWidth - filled, 100 * fraction, note, separator, left);
+  } else {
+    fmt::print(stderr, "{} {:.0f}%  {}{}{}\n", what_, 100 * fraction, note, separator, left);
+  }
+  std::fflush(stderr);
+}
+
+void Progress::finish() {
+  if (shown_ && terminal_) fmt::print(stderr, "\n");
+  shown_ = false;
+  quiet_ = true;
+}
+
+std::string format_seconds(double seconds) {
+  const auto whole = static_cast<long>(std::lround(std::max(0.0, seconds)));
+  if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
+  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+}  // namespace psf::core

@@ -1,0 +1,36 @@
+// Progress of long work on stderr: a bar on a terminal, a line now and then elsewhere.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace psf::core {
+
+// Not for use from several threads at once: call advance() between parallel steps.
+class Progress {
+ public:
+  // `what`: a word or two, "render". `quiet`: say nothing.
+  Progress(std::string what, std::size_t total, bool quiet);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  // `done` of `total` steps; `note` is shown behind the bar, "3.1 M rays/s".
+  void advance(std::size_t done, const std::string& note = {});
+  // Ends the bar's line; nothing is shown afterwards.
+  void finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string what_;
+  std::size_t total_;
+  bool quiet_, terminal_;
+  bool shown_ = false;
+  Clock::time_point start_, last_;
+};
+
+// 73 -> "1:13"
+[[nodiscard]] std::string format_seconds(double seconds);
+
+}  // namespace psf::core

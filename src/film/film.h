@@ -1,0 +1,37 @@
+// One camera's picture as sums: the mean over the paths of each pixel [pixel].
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace psf::film {
+
+// Sums in double, so that the mean of millions of paths is exact to float. Add from one thread, in path
+// order: then the picture is the same bytes for any number of threads.
+class Film {
+ public:
+  Film(std::size_t width, std::size_t height)
+      : width_(width), height_(height), sum_(3 * width * height), count_(width * height) {}
+
+  // `pixel`: y * width + x, row 0 at the top.
+  void add(std::uint32_t pixel, const Rgb& radiance) {
+    sum_[3 * std::size_t{pixel}] += radiance.x;
+    sum_[3 * std::size_t{pixel} + 1] += radiance.y;
+    sum_[3 * std::size_t{pixel} + 2] += radiance.z;
+    ++count_[pixel];
+  }
+  [[nodiscard]] std::size_t width() const { return width_; }
+  [[nodiscard]] std::size_t height() const { return height_; }
+  // (height, width, 3) means; 0 where a pixel has no path.
+  [[nodiscard]] std::vector<float> mean() const;
+
+ private:
+  std::size_t width_, height_;
+  std::vector<double> sum_;
+  std::vector<std::uint64_t> count_;
+};
+
+}  // namespace psf::film

@@ -1,0 +1,27 @@
+// Scene files: JSON of ours, OBJ with MTL, glTF and GLB.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "render/scene.h"
+
+namespace psf::render {
+
+// What the command line adds to or changes in a scene.
+struct SceneOverrides {
+  std::optional<Vec3> eye, target, up;
+  std::optional<float> fov;              // horizontal, degrees
+  std::optional<Vec2> size;              // width, height in pixels, of every camera
+  std::optional<Rgb> sky;                // constant radiance
+  std::optional<std::string> sky_map;    // equirectangular picture
+  std::optional<Vec3> sun_direction;     // toward the sun
+  std::optional<Rgb> sun;                // irradiance on a facing surface
+  float sun_angle = 0.00465f;            // angular radius, radians
+};
+
+// Loads by extension, applies the overrides, validates, computes the hash. A scene without camera gets one that
+// sees all of it. Throws Error{io} for a missing file, Error{bad_input} naming file and place (JSON path, line).
+[[nodiscard]] Scene load_scene(const std::string& path, const SceneOverrides& overrides = {});
+
+}  // namespace psf::render

@@ -1,0 +1,99 @@
+// What a scene is once loaded: plain data that the loaders fill and the light transport reads.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/vec.h"
+#include "render/texture.h"
+
+namespace psf::render {
+
+constexpr int kNone = -1;  // no texture, no light
+
+enum class MaterialKind : std::uint8_t {
+  diffuse,    // Lambert
+  mirror,     // perfect, tinted by reflectance
+  glass,      // smooth dielectric of index `ior`, transmission tinted by reflectance
+  conductor,  // GGX, Fresnel by Schlick with `reflectance` at normal incidence
+  coat        // dielectric GGX coat of `ior` over a diffuse base; `metalness` blends it into a conductor
+};
+
+struct Material {
+  std::string name;
+  MaterialKind kind = MaterialKind::diffuse;
+  Rgb reflectance{0.5f, 0.5f, 0.5f};
+  int reflectance_texture = kNone;  // multiplies reflectance
+  float roughness = 0.5f;           // perceptual: GGX alpha = roughness^2
+  float metalness = 0;
+  int roughness_metalness_texture = kNone;  // glTF: G multiplies roughness, B multiplies metalness
+  float ior = 1.5f;
+  bool two_sided = true;        // false: the back side reflects nothing
+  bool emits_two_sided = false;
+  Rgb emission{0, 0, 0};        // radiance of the front side
+  int emission_texture = kNone;
+};
+
+// Triangles with one material, world space. Counter-clockwise seen from the front.
+struct Mesh {
+  std::string name;
+  std::vector<Vec3> positions;  // world units
+  std::vector<Vec3> normals;    // empty, or unit, one a position
+  std::vector<Vec2> uvs;        // empty, or one a position
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  int material = 0;
+};
+
+struct Sphere {
+  std::string name;
+  Vec3 center;
+  float radius = 1;  // front is outside
+  int material = 0;
+};
+
+enum class LightKind : std::uint8_t { point, directional, spot };
+
+// Lights without surface. Those with one are the emissive meshes and spheres.
+struct Light {
+  std::string name;
+  LightKind kind = LightKind::point;
+  Vec3 position;                // point, spot
+  Vec3 direction{0, 0, -1};     // unit, in which the light travels: directional, spot
+  Rgb intensity{1, 1, 1};       // point, spot: radiant intensity; directional: irradiance on a facing surface
+  float cos_inner = 1, cos_outer = 0;  // spot: full inside, smooth falloff to 0 at outer
+  float angle = 0;              // directional: angular radius in radians, 0 for a point at infinity
+};
+
+// Light from infinity: a constant sky, or an equirectangular map times `radiance`.
+struct Environment {
+  Rgb radiance{0, 0, 0};
+  int texture = kNone;   // latitude-longitude; +y is up, the centre of the map looks along -z
+  float rotation = 0;    // radians about +y
+};
+
+struct Camera {
+  std::string name;
+  Vec3 eye{0, 0, 0}, target{0, 0, -1}, up{0, 1, 0};
+  float fov = 0.7f;  // horizontal field of view, radians
+  std::uint32_t width = 512, height = 512;
+  float lens_radius = 0;      // 0: pinhole
+  float focus_distance = 1;   // along the view axis, used where lens_radius > 0
+};
+
+struct Scene {
+  std::string name;  // file name without folder
+  std::string hash;  // hexadecimal, over everything that shapes the picture (files and command-line changes)
+  std::vector<Texture> textures;
+  std::vector<Material> materials;
+  std::vector<Mesh> meshes;
+  std::vector<Sphere> spheres;
+  std::vector<Light> lights;
+  Environment environment;
+  std::vector<Camera> cameras;
+  std::vector<std::string> warnings;  // what was repaired or left out while loading, one line each
+};
+
+}  // namespace psf::render

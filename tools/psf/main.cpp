@@ -1,0 +1,16 @@
+// psf: offline path space filtering of path-vertex buffers.
+#include "cli.h"
+#include "verbs.h"
+#include "version.h"
+
+int main(int argc, char** argv) {
+  CLI::App app("Path space filtering, offline: filters, checks and compares what a renderer dumped.", "psf");
+  app.set_version_flag("--version", std::string("psf ") + psf::tools::kVersion);
+  app.require_subcommand(1);
+  psf::tools::set_example(app, "psf filter scene.pvb -o filtered.exr");
+  psf::tools::add_filter(app);
+  psf::tools::add_info(app);
+  psf::tools::add_verify(app);
+  psf::tools::add_compare(app);
+  return psf::tools::run_tool(app, argc, argv);
+}

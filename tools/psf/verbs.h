@@ -1,0 +1,13 @@
+// The verbs of psf. Each adds its subcommand; one file a verb.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace psf::tools {
+
+void add_compare(CLI::App& app);
+void add_filter(CLI::App& app);
+void add_info(CLI::App& app);
+void add_verify(CLI::App& app);
+
+}  // namespace psf::tools
