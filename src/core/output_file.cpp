@@ -22,6 +22,11 @@ OutputFile::OutputFile(const std::string& path) : path_(path) {
   if (!fs::is_directory(folder)) {
     throw Error(ErrorCode::io, path + ": the folder " + folder.string() + " does not exist, create it first");
   }
+  // A device or a pipe takes bytes as they come; renaming would put a plain file in its place.
+  if (fs::exists(target) && !fs::is_regular_file(target)) {
+    temporary_ = path_;
+    return;
+  }
   temporary_ = (folder / ("." + target.stem().string() + "." + std::to_string(getpid()) + ".partial" +
                           target.extension().string()))
                    .string();
@@ -31,11 +36,11 @@ OutputFile::OutputFile(const std::string& path) : path_(path) {
 }
 
 OutputFile::~OutputFile() {
-  if (!committed_) std::remove(temporary_.c_str());
+  if (!committed_ && temporary_ != path_) std::remove(temporary_.c_str());
 }
 
 void OutputFile::commit() {
-  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
+  if (temporary_ != path_ && std::rename(temporary_.c_str(), path_.c_str()) != 0) {
     throw Error(ErrorCode::io, path_ + ": cannot put the finished file in place: " + std::strerror(errno));
   }
   committed_ = true;

@@ -17,14 +17,14 @@ void parallel_for(std::size_t count, std::size_t grain,
 }
 
 struct ThreadLimit::State {
+  // In place: a copy of a global_control ends the control when it is destroyed.
+  explicit State(std::size_t threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
   tbb::global_control control;
 };
 
 ThreadLimit::ThreadLimit(std::size_t threads) {
-  // More threads than cores only cost; fewer ranges than threads is the loop's business.
   const auto cores = static_cast<std::size_t>(tbb::info::default_concurrency());
-  state_ = std::make_unique<State>(
-      State{{tbb::global_control::max_allowed_parallelism, threads == 0 ? cores : threads}});
+  state_ = std::make_unique<State>(threads == 0 ? cores : threads);
 }
 ThreadLimit::~ThreadLimit() = default;
 

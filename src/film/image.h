@@ -18,6 +18,7 @@ struct Layer {
 };
 
 struct Image {
+  std::string path;  // where it was read from, for messages
   std::size_t width = 0, height = 0;
   std::vector<Layer> layers;
   std::vector<std::pair<std::string, std::string>> attributes;  // written as strings, in this order
@@ -25,7 +26,7 @@ struct Image {
   // Adds channels prefix + suffix[k] (suffixes "RGB" or "XYZ" or "Y") from (height, width, suffix count) values.
   void add(const std::string& prefix, const std::string& suffixes, std::span<const float> values);
   [[nodiscard]] const std::vector<float>* find(const std::string& channel) const;
-  // The colours of `prefix`R, G, B as (height, width); throws Error{bad_input} naming the channel missing.
+  // The colours of `prefix`R, G, B as (height, width); throws Error{bad_input} naming file and channel.
   [[nodiscard]] std::vector<Rgb> rgb(const std::string& prefix = "") const;
 };
 
@@ -35,7 +36,7 @@ void write_exr(const std::string& path, const Image& image);
 // Reads every channel of a single-part EXR as float. Throws Error{io} or Error{bad_input}.
 [[nodiscard]] Image read_exr(const std::string& path);
 
-// 8-bit PNG of R, G, B: times 2^exposure, the filmic curve of display.h, sRGB transfer.
+// 8-bit PNG of R, G, B: times 2^exposure, the tone curve of display.h, sRGB transfer.
 void write_png(const std::string& path, const Image& image, float exposure = 0);
 
 // By extension: .exr or .png; anything else throws Error{usage}.

@@ -1,0 +1,24 @@
+// From linear radiance to what a screen shows.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace psf::film {
+
+// Linear up to kShoulder, above it an exponential that reaches 1 at infinity, with the same slope where they
+// meet: mid-tones stay true, lamps do not burn out. NaN and negative values are black.
+[[nodiscard]] inline float tone_map(float linear) {
+  constexpr float kShoulder = 0.7f;
+  if (!(linear > 0)) return 0;
+  if (linear < kShoulder) return linear;
+  return 1 - (1 - kShoulder) * std::exp(-(linear - kShoulder) / (1 - kShoulder));
+}
+
+// IEC 61966-2-1.
+[[nodiscard]] inline float srgb_from_linear(float linear) {
+  const float x = std::clamp(linear, 0.0f, 1.0f);
+  return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
+}
+
+}  // namespace psf::film

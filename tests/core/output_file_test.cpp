@@ -1,0 +1,66 @@
+// An output appears under its name only when whole.
+#include "core/output_file.h"
+
+#include <fstream>
+#include <iterator>
+
+#include "catch.h"
+#include "formats/error.h"
+#include "temp_folder.h"
+
+using psf::core::OutputFile;
+using psf::tests::TempFolder;
+
+namespace {
+
+std::string contents(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+TEST_CASE("a file that is not committed leaves what was there before, and nothing else") {
+  const TempFolder folder;
+  const std::string path = folder / "out.txt";
+  psf::core::write_text_file(path, "old");
+  {
+    OutputFile file(path);
+    std::ofstream(file.temporary_path()) << "half";
+  }
+  CHECK(contents(path) == "old");
+  CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("a committed file replaces the old one whole") {
+  const TempFolder folder;
+  const std::string path = folder / "out.txt";
+  psf::core::write_text_file(path, "old");
+  psf::core::write_text_file(path, "new");
+  CHECK(contents(path) == "new");
+  CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("the temporary keeps the extension, by which libraries choose the format") {
+  const TempFolder folder;
+  const OutputFile file(folder / "picture.exr");
+  CHECK(file.temporary_path().ends_with(".exr"));
+}
+
+TEST_CASE("a missing folder, a folder as file name and an empty name are told at once") {
+  const TempFolder folder;
+  for (const std::string& path : {folder / "nowhere/out.exr", folder.path().string(), std::string()}) {
+    try {
+      OutputFile file(path);
+      FAIL("no error for \"" << path << '"');
+    } catch (const psf::Error& error) {
+      CHECK(error.code() == psf::ErrorCode::io);
+      CHECK(std::string(error.what()).starts_with(path));
+    }
+  }
+  CHECK(folder.file_count() == 0);
+}
+
+TEST_CASE("a full disk is an error, not a short file") {
+  CHECK_THROWS_AS(psf::core::write_text_file("/dev/full", "text"), psf::Error);
+}
