@@ -8,16 +8,17 @@ namespace psf {
 
 // Exit codes of every tool.
 enum class ErrorCode : int {
-  comparison = 1,   // a comparison or verification failed
-  usage = 2,        // the command line
-  bad_input = 3,    // a file that is malformed, damaged or lacks something
-  io = 4,           // the operating system refused: missing file, full disk, permissions
-  limit = 5,        // a limit of memory, size or time
-  interrupted = 130 // ^C
+  comparison = 1,    // a comparison or verification failed
+  usage = 2,         // the command line
+  bad_input = 3,     // a file that is malformed, damaged or lacks something
+  io = 4,            // the operating system refused: missing file, full disk, permissions
+  limit = 5,         // a limit of memory, size or time
+  interrupted = 130  // ^C
 };
 
 // Thrown for bad input and failed I/O, caught once, in main. The message is one line that names the
-// file, the place in it and the remedy: "room.json: /materials/2/roughness: expected a number in [0, 1]".
+// file, the place in it and the remedy: "room.json: /materials/2/roughness: expected a number in
+// [0, 1]".
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}

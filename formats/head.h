@@ -1,6 +1,7 @@
 // HEAD: what a path-vertex buffer declares about itself, its channels and its metadata.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -9,6 +10,9 @@
 #include <vector>
 
 namespace psf::formats {
+
+// Of the file; every frame carries it.
+using Uuid = std::array<std::uint8_t, 16>;
 
 // Scalar type of a stored component; values are those of the file.
 enum class Type : std::uint8_t { u8 = 1, u16 = 2, u32 = 3, u64 = 4, f16 = 5, f32 = 6, f64 = 7 };
@@ -25,7 +29,9 @@ struct Channel {
   std::uint8_t components = 1;  // 1 to 16, as stored
   Encoding encoding = Encoding::plain;
 
-  [[nodiscard]] std::size_t stride() const { return size_of(type) * components; }  // stored bytes a record
+  [[nodiscard]] std::size_t stride() const {
+    return size_of(type) * components;
+  }  // stored bytes a record
   // Components of the value that a reader gets as floats: 3 for an octahedral channel.
   [[nodiscard]] std::size_t decoded_components() const {
     return encoding == Encoding::octahedral ? 3 : components;
@@ -43,6 +49,11 @@ struct Head {
   std::string metadata = "{}";           // a JSON object, UTF-8, at most 1 MiB; see metadata.h
 
   [[nodiscard]] std::optional<std::size_t> find(std::string_view channel) const;
+  [[nodiscard]] std::size_t stride() const;  // stored bytes a record, all channels
 };
+
+// Throws Error{bad_input} that says which limit or rule of version 1 the head breaks (the caller
+// adds the file).
+void validate(const Head& head);
 
 }  // namespace psf::formats

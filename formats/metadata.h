@@ -10,32 +10,35 @@ namespace psf::formats {
 
 struct CameraInfo {
   std::string name;
-  std::uint32_t width = 0, height = 0;           // pixels
-  double angle_per_pixel = 0;                    // radians, at the centre of the picture
-  std::array<double, 16> camera_to_world{};      // row-major, column vectors; camera looks along -z, y up
-  std::array<double, 16> projection{};           // camera space to clip space, row-major, column vectors
+  std::uint32_t width = 0, height = 0;  // pixels
+  double angle_per_pixel = 0;           // radians, at the centre of the picture
+  std::array<double, 16>
+      camera_to_world{};                // row-major, column vectors; camera looks along -z, y up
+  std::array<double, 16> projection{};  // camera space to clip space, row-major, column vectors
   bool operator==(const CameraInfo&) const = default;
 };
 
 struct Metadata {
-  std::string producer;               // program and version
-  std::string scene, scene_hash;      // file name without folder; hash over everything that shapes the picture
-  std::string integrator;             // path, direct, ao, ...
-  std::string sampler;                // sobol, halton, independent
-  std::string enumeration;            // "pixel" (a pass visits pixels in order) or "global" (one sequence over the image plane)
+  std::string producer;  // program and version
+  std::string scene,
+      scene_hash;          // file name without folder; hash over everything that shapes the picture
+  std::string integrator;  // path, direct, ao, ...
+  std::string sampler;     // sobol, halton, independent
+  std::string enumeration;  // "pixel" (a pass visits pixels in order) or "global" (one sequence
+                            // over the image plane)
   std::uint64_t seed = 0;
-  std::uint32_t block_base = 2;       // b: blocks of b^m contiguous paths are well distributed
-  std::uint32_t split = 1;            // continuations averaged into each contribution
-  double vertex_roughness = 0;        // vertex rule: first vertex whose roughness is at least this
-  std::string vertex_rule;            // the same in words
-  std::string units;                  // of lengths, "scene" where unknown
-  std::vector<CameraInfo> cameras;    // index = value of the channel `camera`
-  std::vector<std::string> lights;    // light l owns bit l mod 32 of the channel `visibility`
+  std::uint32_t block_base = 2;     // b: blocks of b^m contiguous paths are well distributed
+  std::uint32_t split = 1;          // continuations averaged into each contribution
+  double vertex_roughness = 0;      // vertex rule: first vertex whose roughness is at least this
+  std::string vertex_rule;          // the same in words
+  std::string units;                // of lengths, "scene" where unknown
+  std::vector<CameraInfo> cameras;  // index = value of the channel `camera`
+  std::vector<std::string> lights;  // light l owns bit l mod 32 of the channel `visibility`
 };
 
 [[nodiscard]] std::string to_json(const Metadata& metadata);
-// Unknown keys are ignored, missing ones keep their defaults; a key of the wrong type or text that is no
-// JSON object throws Error{bad_input} naming the key (the caller adds the file).
+// Unknown keys are ignored, missing ones keep their defaults; a key of the wrong type or text that
+// is no JSON object throws Error{bad_input} naming the key (the caller adds the file).
 [[nodiscard]] Metadata parse_metadata(const std::string& json);
 
 }  // namespace psf::formats

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -14,14 +15,16 @@ namespace psf::formats {
 enum class Codec : std::uint8_t { raw = 0, zstd = 1 };
 
 struct WriterOptions {
-  Codec codec = Codec::zstd;  // zstd: level 1 behind a 4-byte shuffle, for each column that it makes smaller
-  bool sync = true;           // fdatasync before and after each commit
+  Codec codec =
+      Codec::zstd;   // zstd: level 1 behind a 4-byte shuffle, for each column that it makes smaller
+  bool sync = true;  // fdatasync before and after each commit
+  std::optional<Uuid> uuid;  // of the file; random unless given
 };
 
-// The file appears under `path` with its first commit (until then it is `path`.partial, removed by the
-// destructor), so a name never holds less than one whole pass. The first error sticks: every later call
-// throws it again, and the last commit stays readable. Not for use from several threads at once; it
-// compresses the columns of a call in parallel itself.
+// The file appears under `path` with its first commit (until then it is `path`.partial, removed by
+// the destructor), so a name never holds less than one whole pass. The first error sticks: every
+// later call throws it again, and the last commit stays readable. Not for use from several threads
+// at once; it compresses the columns of a call in parallel itself.
 class Writer {
  public:
   Writer(const std::string& path, const Head& head, const WriterOptions& options = {});
@@ -34,10 +37,11 @@ class Writer {
   void append(std::size_t count, std::span<const void* const> columns);
   // Ends the current pass. `resume_state`: at most 64 KiB that the producer wants back on resume.
   void commit(std::span<const std::byte> resume_state = {});
-  // Writes the last commit again with the flag "closed". Records appended since the last commit() are an error.
+  // Writes the last commit again with the flag "closed". Records appended since the last commit()
+  // are an error.
   void close();
 
-  [[nodiscard]] std::uint64_t records() const;        // committed
+  [[nodiscard]] std::uint64_t records() const;  // committed
   [[nodiscard]] std::uint64_t bytes_written() const;
 
  private:

@@ -1,1 +1,186 @@
-int main() { return 2; }
+// psf-render: renders a scene into a path-vertex buffer.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/interrupt.h"
+#include "core/output_file.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "film/image.h"
+#include "formats/error.h"
+#include "render/render.h"
+#include "render_options.h"
+#include "version.h"
+
+namespace psf::tools {
+namespace {
+
+std::vector<std::size_t> select_cameras(const render::Scene& scene,
+                                        const std::vector<std::string>& names) {
+  if (names.empty()) return {0};
+  std::vector<std::size_t> result;
+  for (const std::string& name : names) {
+    if (name == "all") return {};
+    std::string known;
+    std::size_t found = scene.cameras.size();
+    for (std::size_t k = scene.cameras.size(); k-- > 0;) {
+      if (scene.cameras[k].name == name) found = k;
+      known = scene.cameras[k].name + (known.empty() ? "" : ", ") + known;
+    }
+    if (found == scene.cameras.size()) {
+      throw Error(ErrorCode::usage, fmt::format("{}: no camera is called \"{}\"; its cameras: {}",
+                                                scene.name, name, known));
+    }
+    if (std::find(result.begin(), result.end(), found) == result.end()) result.push_back(found);
+  }
+  return result;
+}
+
+film::Image make_image(const render::Scene& scene, const render::Camera& camera,
+                       const film::Film& film, const render::RenderSettings& settings,
+                       std::uint64_t passes) {
+  film::Image image;
+  image.width = film.width();
+  image.height = film.height();
+  image.add("", "RGB", film.mean());
+  const auto& i = settings.integrator;
+  image.attributes = {{"producer", settings.producer},
+                      {"scene", scene.name},
+                      {"sceneHash", scene.hash},
+                      {"camera", camera.name},
+                      {"integrator", i.name},
+                      {"maxDepth", fmt::format("{}", i.max_depth)},
+                      {"rouletteDepth", fmt::format("{}", i.roulette_depth)},
+                      {"split", fmt::format("{}", i.split)},
+                      {"sampler", render::to_string(settings.sampler.kind)},
+                      {"enumeration", render::to_string(settings.sampler.enumeration)},
+                      {"seed", fmt::format("{}", settings.sampler.seed)},
+                      {"shadeRate", fmt::format("1/{}", settings.shade_rate)},
+                      {"passes", fmt::format("{}", passes)}};
+  if (i.name == "ao" && std::isfinite(i.ao_distance)) {
+    image.attributes.emplace_back("aoDistance", fmt::format("{}", i.ao_distance));
+  }
+  return image;
+}
+
+// "out.exr" and camera "left" -> "out.left.exr"; what a file name cannot hold becomes "_".
+std::string image_path(const std::string& path, std::string camera, bool several) {
+  if (!several) return path;
+  std::replace_if(
+      camera.begin(), camera.end(),
+      [](unsigned char c) {
+        return c < 32 ||
+               std::string_view("/\\:*?\"<>|").find(static_cast<char>(c)) != std::string_view::npos;
+      },
+      '_');
+  const std::filesystem::path p(path);
+  return (p.parent_path() / (p.stem().string() + "." + camera + p.extension().string())).string();
+}
+
+std::string format_bytes(double bytes) {
+  if (bytes >= 1e9) return fmt::format("{:.2f} GB", bytes / 1e9);
+  if (bytes >= 1e6) return fmt::format("{:.1f} MB", bytes / 1e6);
+  return fmt::format("{:.1f} kB", bytes / 1e3);
+}
+
+void run(RenderOptions& options) {
+  const core::ThreadLimit threads(options.common.threads);
+  check_outputs(options);
+  const auto start = std::chrono::steady_clock::now();
+  const render::Scene scene = render::load_scene(options.scene, options.overrides);
+  if (!options.common.quiet) {
+    for (const std::string& warning : scene.warnings) fmt::print(stderr, "note: {}\n", warning);
+  }
+  auto& settings = options.settings;
+  settings.producer = std::string("psf-render ") + kVersion;
+  settings.quiet = options.common.quiet;
+  settings.cameras = select_cameras(scene, options.cameras);
+  settings.validate(scene);
+  const auto integrator = render::make_integrator(scene, settings.integrator);
+  std::unique_ptr<formats::Writer> writer;
+  if (!options.output.empty()) {
+    formats::WriterOptions writer_options;
+    writer_options.codec = options.codec;
+    writer = std::make_unique<formats::Writer>(
+        options.output, render::make_head(scene, *integrator, settings), writer_options);
+  }
+  const double prepared =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  core::throw_if_interrupted("nothing was rendered, nothing is written");
+
+  const render::RenderResult result = render::render(scene, *integrator, settings, writer.get());
+
+  const auto cameras = render::chosen_cameras(scene, settings);
+  std::vector<std::string> images;
+  for (std::size_t k = 0; k < cameras.size(); ++k) {
+    const render::Camera& camera = scene.cameras[cameras[k]];
+    if (options.images.empty()) break;
+    const film::Image image = make_image(scene, camera, result.films[k], settings, result.passes);
+    for (const std::string& path : options.images) {
+      images.push_back(image_path(path, camera.name, cameras.size() > 1));
+      film::write_image(images.back(), image);
+    }
+  }
+
+  const double rate = static_cast<double>(result.rays) / std::max(1e-9, result.seconds);
+  fmt::print("{}: {} passes, {} paths, {} rays in {:.2f} s, {:.2f} M rays/s\n", scene.name,
+             result.passes, result.paths, result.rays, result.seconds, rate / 1e6);
+  if (writer) {
+    fmt::print("{}: {}\n", options.output,
+               format_bytes(static_cast<double>(writer->bytes_written())));
+  }
+  for (const std::string& image : images) fmt::print("{}\n", image);
+  std::fflush(stdout);
+  if (result.non_finite != 0 && !options.common.quiet) {
+    fmt::print(stderr,
+               "note: {} paths are not finite; pictures leave them out, the dump keeps them\n",
+               result.non_finite);
+  }
+  if (!options.common.json.empty()) {
+    nlohmann::ordered_json figures = {{"scene", scene.name},
+                                      {"passes", result.passes},
+                                      {"paths", result.paths},
+                                      {"rays", result.rays},
+                                      {"prepare_seconds", prepared},
+                                      {"seconds", result.seconds},
+                                      {"output_seconds", result.output_seconds},
+                                      {"rays_per_second", rate},
+                                      {"non_finite", result.non_finite},
+                                      {"interrupted", result.interrupted},
+                                      {"images", images}};
+    if (writer) {
+      figures["file"] = options.output;
+      figures["bytes"] = writer->bytes_written();
+    }
+    core::write_text_file(options.common.json, figures.dump(2) + "\n");
+  }
+  if (result.interrupted) {
+    const std::string kept = writer ? options.output + " keeps" : "the pictures keep";
+    throw Error(ErrorCode::interrupted,
+                fmt::format("interrupted after pass {} of {}: {} all {} paths of them",
+                            result.passes, settings.passes, kept, result.paths));
+  }
+}
+
+}  // namespace
+}  // namespace psf::tools
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Renders a scene and writes one record per light transport path to a path-vertex buffer,\n"
+      "which psf filters.\n",
+      "psf-render");
+  psf::tools::RenderOptions options;
+  psf::tools::add_render_options(app, options);
+  psf::tools::set_example(app,
+                          "psf-render sample_data/cornell.json -o cornell.pvb --image cornell.png");
+  app.callback([&options] { psf::tools::run(options); });
+  return psf::tools::run_tool(app, argc, argv);
+}

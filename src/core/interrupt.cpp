@@ -4,7 +4,7 @@
 #include <csignal>
 #include <string>
 
-#include "formats/error.h"
+#include "core/error.h"
 
 namespace psf::core {
 namespace {

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "formats/error.h"
+#include "core/error.h"
 
 namespace psf::core {
 namespace fs = std::filesystem;

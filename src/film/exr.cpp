@@ -11,7 +11,7 @@
 
 #include "core/output_file.h"
 #include "film/image.h"
-#include "formats/error.h"
+#include "core/error.h"
 
 namespace psf::film {
 namespace {

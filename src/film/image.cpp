@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "core/output_file.h"
-#include "formats/error.h"
+#include "core/error.h"
 
 namespace psf::film {
 

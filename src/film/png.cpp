@@ -8,7 +8,7 @@
 #include "core/output_file.h"
 #include "film/display.h"
 #include "film/image.h"
-#include "formats/error.h"
+#include "core/error.h"
 
 namespace psf::film {
 

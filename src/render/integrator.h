@@ -1,4 +1,29 @@
-// From a camera ray to the record of its path: the one interface between light transport and the rest.
+// From a camera ray to the record of its path: the one interface between light transport and the
+// rest.
+//
+// x_i is the first vertex of the camera segment whose roughness is at least `vertex_roughness`;
+// perfect mirrors and glass never are. Where a coat is smoother than that over its diffuse base,
+// one of the two is chosen at random and its probability divided out of alpha_i, so x_i lies on the
+// base or on what the coat mirrors. The back of a one-sided material ends the path without a
+// vertex.
+//
+// The pixel's value is the mean of u_i + alpha_i c_i, without bias but for max_depth. u_i holds
+// what does not pass through x_i: emission met on the camera segment, that of x_i's own surface
+// included; the sky; and light sampled at glossy vertices before x_i.
+//
+//   path    light sampling and scattering, combined by the power heuristic; Russian roulette. At
+//   x_i every light
+//           is sampled once where there are at most 32 besides the sky, else, as at all other
+//           vertices, one by power. Bit l mod 32 of `visibility` is set where the sample of light l
+//           was unoccluded; the sky has no bit. A constant sky is found by scattering alone, an
+//           environment map is sampled too.
+//   direct  the same without what is reflected between surfaces after x_i: path with the depth of
+//   x_i. ao      c_i is grey, 1 where a cosine-weighted ray from x_i meets nothing within
+//   ao_distance, else 0; u_i is 0
+//           (lights and sky play no part), visibility 0.
+//
+// With `split`, c_i is the mean of that many continuations; visibility and hit_distance are the
+// first one's.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +42,8 @@ struct Ray {
   Vec3 origin, direction;  // direction is unit
 };
 
-// Everything the path-vertex buffer keeps of one path; the symbols are those of src/filter/README.md.
+// Everything the path-vertex buffer keeps of one path; the symbols are those of
+// src/filter/README.md.
 struct PathRecord {
   bool has_vertex = false;    // x_i exists
   bool shaded = false;        // c_i was computed
@@ -29,19 +55,22 @@ struct PathRecord {
   Rgb unfiltered{0, 0, 0};    // u_i
   float distance = 0;         // d_i, length of the camera segment, world units
   std::uint32_t visibility = 0;  // bit l mod 32 set: light l was seen from x_i
-  float hit_distance = 0;     // length of the first ray shot from x_i by scattering; infinity for a miss
-  Vec3 direction{0, 0, 0};    // unit, from x_i toward where the camera segment came from
-  std::uint32_t material = 0; // index in Scene::materials
-  float roughness = 0;        // perceptual; 1 for diffuse
+  float hit_distance =
+      0;  // length of the first ray scattered from x_i; infinity for a miss or absorption
+  Vec3 direction{0, 0, 0};     // unit, from x_i toward where the camera segment came from
+  std::uint32_t material = 0;  // index in Scene::materials
+  float roughness = 0;         // perceptual; 1 for diffuse
 };
 
 struct IntegratorSettings {
-  std::string name = "path";         // path, direct, ao
-  int max_depth = 16;                // most surface interactions a path
-  int roulette_depth = 4;            // Russian roulette starts here
-  float vertex_roughness = 0.3f;     // x_i: the first vertex with perceptual roughness of at least this
-  std::uint32_t split = 1;           // continuations from x_i, averaged into c_i
-  float ao_distance = std::numeric_limits<float>::infinity();  // ao: farther surfaces do not occlude
+  std::string name = "path";  // path, direct, ao
+  int max_depth = 16;         // most surface interactions a path, the camera segment's included
+  int roulette_depth = 4;     // Russian roulette starts after this many, never at x_i
+  float vertex_roughness =
+      0.3f;                 // x_i: the first vertex with perceptual roughness of at least this
+  std::uint32_t split = 1;  // continuations from x_i, averaged into c_i
+  float ao_distance =
+      std::numeric_limits<float>::infinity();  // ao: farther surfaces do not occlude
 };
 
 class Integrator {
@@ -55,7 +84,7 @@ class Integrator {
 };
 
 // Builds the acceleration structure (Embree) and the lights. The scene must outlive the integrator.
-// Throws Error{usage} for an unknown name, listing those there are.
+// Throws Error{usage} for an unknown name, listing those there are, and for settings out of range.
 [[nodiscard]] std::unique_ptr<Integrator> make_integrator(const Scene& scene,
                                                           const IntegratorSettings& settings);
 [[nodiscard]] const std::vector<std::string>& integrator_names();

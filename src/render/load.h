@@ -8,20 +8,24 @@
 
 namespace psf::render {
 
-// What the command line adds to or changes in a scene.
+// What the command line adds to or changes in a scene. A pose (eye, target, up) leaves one camera,
+// the first, which keeps what is not given. A sky replaces the environment; a sun is added to the
+// lights, from (0.4, 1, 0.3) and of irradiance 3 where only one of the two is given.
 struct SceneOverrides {
   std::optional<Vec3> eye, target, up;
-  std::optional<float> fov;              // horizontal, degrees
-  std::optional<Vec2> size;              // width, height in pixels, of every camera
-  std::optional<Rgb> sky;                // constant radiance
-  std::optional<std::string> sky_map;    // equirectangular picture
-  std::optional<Vec3> sun_direction;     // toward the sun
-  std::optional<Rgb> sun;                // irradiance on a facing surface
-  float sun_angle = 0.00465f;            // angular radius, radians
+  std::optional<float> fov;            // horizontal, degrees, of every camera
+  std::optional<Vec2> size;            // width, height in pixels, of every camera
+  std::optional<Rgb> sky;              // constant radiance
+  std::optional<std::string> sky_map;  // equirectangular picture
+  std::optional<Vec3> sun_direction;   // toward the sun
+  std::optional<Rgb> sun;              // irradiance on a facing surface
+  float sun_angle = 0.00465f;          // angular radius, radians
 };
 
-// Loads by extension, applies the overrides, validates, computes the hash. A scene without camera gets one that
-// sees all of it. Throws Error{io} for a missing file, Error{bad_input} naming file and place (JSON path, line).
+// Loads by extension, applies the overrides, validates, computes the hash. A scene without camera
+// gets one that sees all of it. Throws Error{io} for a missing file, Error{bad_input} naming file
+// and place (JSON path, line), Error{limit} for more than 2^27 triangles and spheres, Error{usage}
+// naming the option of a senseless override.
 [[nodiscard]] Scene load_scene(const std::string& path, const SceneOverrides& overrides = {});
 
 }  // namespace psf::render

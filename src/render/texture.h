@@ -1,7 +1,11 @@
-// A texture: linear RGB floats, bilinear, repeating. Files are read by OpenImageIO.
+// A texture: linear RGB, bilinear, repeating. Files are read by OpenImageIO.
 #pragma once
 
-#include <memory>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -9,23 +13,50 @@
 
 namespace psf::render {
 
-enum class ColorSpace { srgb, linear };  // of 8-bit files; float files are linear whatever is asked
+enum class ColorSpace {
+  srgb,
+  linear
+};  // of integer files; float files are linear whatever is asked
 
+// Alpha is ignored, grey becomes RGB. 8-bit files stay 8-bit in memory (4 bytes a texel) and are
+// made linear by a table at each lookup; all else is 32-bit float.
 class Texture {
  public:
   // (height, width) colours, row 0 at v = 1 (the top of the picture).
   Texture(std::size_t width, std::size_t height, std::vector<Rgb> texels);
-  // Throws Error{io} where the file is missing, Error{bad_input} where it is no picture; both name the file.
+  // Throws Error{io} where the file is missing, Error{bad_input} where it is no picture,
+  // Error{limit} where it has more than 2^28 texels; all name the file.
   static Texture load(const std::string& path, ColorSpace color_space);
+  // The same from the bytes of a picture file; `name` says in errors where they come from.
+  static Texture decode(std::span<const unsigned char> bytes, const std::string& name,
+                        ColorSpace color_space);
 
   [[nodiscard]] Rgb at(const Vec2& uv) const;  // u to the right, v up
   [[nodiscard]] std::size_t width() const { return width_; }
   [[nodiscard]] std::size_t height() const { return height_; }
-  [[nodiscard]] const Rgb& texel(std::size_t x, std::size_t y) const { return texels_[y * width_ + x]; }
+  [[nodiscard]] Rgb texel(std::size_t x, std::size_t y) const {
+    const std::size_t i = y * width_ + x;
+    if (packed_.empty()) return texels_[i];
+    const std::uint32_t p = packed_[i];
+    return {(*table_)[p & 255], (*table_)[(p >> 8) & 255], (*table_)[(p >> 16) & 255]};
+  }
 
  private:
+  using Table = std::array<float, 256>;
+  Texture(std::size_t width, std::size_t height) : width_(width), height_(height) {}
+  static Texture read(const std::string& name, std::span<const unsigned char> bytes,
+                      ColorSpace color_space);
+  static const Table& table_of(ColorSpace color_space);
+
   std::size_t width_, height_;
-  std::vector<Rgb> texels_;
+  std::vector<std::uint32_t> packed_;  // red in the low byte, or empty
+  const Table* table_ = nullptr;       // of packed_: value of a byte
+  std::vector<Rgb> texels_;            // or empty
 };
+
+// The sRGB transfer curve of IEC 61966-2-1, encoded to linear, both in [0, 1].
+[[nodiscard]] inline float srgb_to_linear(float encoded) {
+  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+}
 
 }  // namespace psf::render

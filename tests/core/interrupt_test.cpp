@@ -4,7 +4,7 @@
 #include <csignal>
 
 #include "catch.h"
-#include "formats/error.h"
+#include "core/error.h"
 
 TEST_CASE("the first interrupt is noted and becomes exit code 130 where work can end") {
   psf::core::watch_interrupts();

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "catch.h"
-#include "formats/error.h"
+#include "core/error.h"
 #include "temp_folder.h"
 
 using psf::core::OutputFile;

@@ -9,7 +9,7 @@
 
 #include "catch.h"
 #include "film/display.h"
-#include "formats/error.h"
+#include "core/error.h"
 #include "temp_folder.h"
 
 using psf::film::Image;

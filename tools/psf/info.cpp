@@ -1,8 +1,280 @@
-// psf info
+// psf info: what a path-vertex buffer holds, what it costs, and statistics of its channels on
+// request.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "cli.h"
+#include "core/output_file.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "formats/error.h"
+#include "formats/metadata.h"
+#include "formats/reader.h"
+#include "formats/statistics.h"
 #include "verbs.h"
 
 namespace psf::tools {
+namespace {
 
-void add_info(CLI::App& app) { app.add_subcommand("info"); }
+struct InfoOptions {
+  CommonOptions common;
+  std::string input;
+  bool statistics = false;
+};
+
+using Statistics = std::vector<std::vector<formats::ComponentStatistics>>;  // by channel
+
+// 1234567 -> "1,234,567"
+std::string grouped(std::uint64_t value) {
+  std::string text = std::to_string(value);
+  for (auto k = static_cast<std::ptrdiff_t>(text.size()) - 3; k > 0; k -= 3) {
+    text.insert(static_cast<std::size_t>(k), ",");
+  }
+  return text;
+}
+
+std::string bytes(std::uint64_t count) {
+  if (count < 1000) return fmt::format("{} B", count);
+  double value = static_cast<double>(count);
+  const char* unit = "";
+  for (const char* next : {"kB", "MB", "GB", "TB"}) {
+    if (value < 999.5) break;
+    value /= 1000;
+    unit = next;
+  }
+  return fmt::format("{:.{}f} {}", value, value < 99.95 ? 1 : 0, unit);
+}
+
+double ratio(const formats::ChannelSize& size) {
+  return size.raw == 0 ? 1 : static_cast<double>(size.stored) / static_cast<double>(size.raw);
+}
+
+// Text of a file may hold what a terminal obeys.
+std::string shown(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7F'; }, '?');
+  return text.empty() ? "-" : text;
+}
+
+std::string type_text(const formats::Channel& channel) {
+  std::string text(name_of(channel.type));
+  if (channel.components > 1) text += fmt::format(" x {}", channel.components);
+  if (channel.encoding == formats::Encoding::octahedral) text += " oct";
+  return text;
+}
+
+std::string codec_text(const formats::ChannelSize& size) {
+  if (size.zstd_columns == 0) return "raw";
+  return size.raw_columns == 0
+             ? "zstd"
+             : fmt::format("zstd, raw in {} of {} chunks", grouped(size.raw_columns),
+                           grouped(size.raw_columns + size.zstd_columns));
+}
+
+std::string passes_text(const formats::Reader& reader) {
+  const auto passes = reader.passes();
+  const bool even = std::all_of(passes.begin(), passes.end(),
+                                [&](const auto& pass) { return pass.count == passes[0].count; });
+  if (passes.size() == 1) return "1 pass";
+  return fmt::format("{} passes{}", grouped(passes.size()),
+                     even && !passes.empty() ? " of " + grouped(passes[0].count) : "");
+}
+
+void line(const char* name, const std::string& value) {
+  fmt::print("  {:<12}{}\n", name, value);
+}
+
+void print_overview(const formats::Reader& reader, const formats::Metadata& metadata) {
+  const formats::Head& head = reader.head();
+  fmt::print("{}: path-vertex buffer {}.{}, {}\n", reader.path(), head.major, head.minor,
+             reader.closed() ? "closed" : "not closed (being written, or its writer was stopped)");
+  line("producer", shown(metadata.producer));
+  line("scene", shown(metadata.scene) +
+                    (metadata.scene_hash.empty() ? "" : ", hash " + shown(metadata.scene_hash)));
+  line("paths",
+       fmt::format("{}, {} sampler by {}, seed {}, block base {}, split {}",
+                   shown(metadata.integrator), shown(metadata.sampler), shown(metadata.enumeration),
+                   metadata.seed, metadata.block_base, metadata.split));
+  line("vertex", shown(metadata.vertex_rule));
+  line("units", shown(metadata.units));
+  line("uuid", reader.uuid());
+  line("records",
+       fmt::format("{} in {}, {} chunk{}", grouped(reader.records()), passes_text(reader),
+                   grouped(reader.chunks().size()), reader.chunks().size() == 1 ? "" : "s"));
+  line("file", bytes(reader.file_bytes()) + (reader.uncommitted_bytes() == 0
+                                                 ? ""
+                                                 : fmt::format(", of which {} are not committed",
+                                                               bytes(reader.uncommitted_bytes()))));
+}
+
+void print_cameras(const formats::Metadata& metadata) {
+  if (metadata.cameras.empty()) return;
+  fmt::print("\n  {:<14}{:>13}  {}\n", "camera", "pixels", "angle per pixel");
+  for (const formats::CameraInfo& camera : metadata.cameras) {
+    fmt::print("  {:<14}{:>13}  {:.4f} degrees\n", shown(camera.name),
+               fmt::format("{} x {}", camera.width, camera.height),
+               camera.angle_per_pixel * 180 / std::numbers::pi);
+  }
+}
+
+void print_lights(const formats::Metadata& metadata) {
+  if (metadata.lights.empty()) return;
+  fmt::print("\n  {:<14}{}\n", "light", "visibility bit");
+  for (std::size_t k = 0; k < metadata.lights.size(); ++k) {
+    fmt::print("  {:<14}{}\n", shown(metadata.lights[k]), k % 32);
+  }
+}
+
+// Of the column that holds the channels' names.
+std::size_t name_width(const formats::Reader& reader) {
+  std::size_t width = 14;
+  for (const formats::Channel& channel : reader.head().channels) {
+    width = std::max(width, channel.name.size());
+  }
+  return width;
+}
+
+void print_channels(const formats::Reader& reader, const std::vector<formats::ChannelSize>& sizes) {
+  constexpr const char* kRow = "  {:<{}} {:<11}{:>9}{:>10}{:>7}  {}\n";
+  const std::size_t width = name_width(reader);
+  fmt::print("\n");
+  fmt::print(kRow, "channel", width, "type", "raw", "stored", "ratio", "codec");
+  formats::ChannelSize total;
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    const formats::Channel& channel = reader.head().channels[k];
+    fmt::print(kRow, channel.name, width, type_text(channel), bytes(sizes[k].raw),
+               bytes(sizes[k].stored), fmt::format("{:.2f}", ratio(sizes[k])),
+               codec_text(sizes[k]));
+    total.raw += sizes[k].raw;
+    total.stored += sizes[k].stored;
+  }
+  fmt::print(kRow, "all", width, fmt::format("{} B/record", reader.head().stride()),
+             bytes(total.raw), bytes(total.stored), fmt::format("{:.2f}", ratio(total)), "");
+}
+
+Statistics read_statistics(const formats::Reader& reader, bool quiet) {
+  const std::size_t channels = reader.head().channels.size(), chunks = reader.chunks().size();
+  Statistics statistics;
+  core::Progress progress("statistics", channels * chunks, quiet);
+  for (std::size_t k = 0; k < channels; ++k) {
+    statistics.push_back(formats::channel_statistics(
+        reader, k, [&](std::size_t done) { progress.advance(k * chunks + done); }));
+  }
+  progress.finish();
+  return statistics;
+}
+
+void print_statistics(const formats::Reader& reader, const Statistics& statistics) {
+  constexpr const char* kRow = "  {:<{}} {:>3}{:>14}{:>14}{:>14}{:>12}\n";
+  const std::size_t width = name_width(reader);
+  fmt::print("\n");
+  fmt::print(kRow, "channel", width, "", "min", "max", "mean", "non-finite");
+  for (std::size_t k = 0; k < statistics.size(); ++k) {
+    for (std::size_t c = 0; c < statistics[k].size(); ++c) {
+      const formats::ComponentStatistics& of = statistics[k][c];
+      const auto number = [&](double value) {
+        return of.finite == 0 ? std::string("-") : fmt::format("{:.6g}", value);
+      };
+      fmt::print(kRow, c == 0 ? reader.head().channels[k].name : "", width,
+                 statistics[k].size() > 1 ? std::to_string(c) : "", number(of.min), number(of.max),
+                 number(of.mean()), grouped(of.non_finite));
+    }
+  }
+}
+
+nlohmann::ordered_json to_json(const formats::Reader& reader,
+                               const std::vector<formats::ChannelSize>& sizes,
+                               const Statistics& statistics) {
+  using Json = nlohmann::ordered_json;
+  Json channels = Json::array(), passes = Json::array();
+  for (std::size_t k = 0; k < sizes.size(); ++k) {
+    const formats::Channel& channel = reader.head().channels[k];
+    Json entry = {
+        {"name", channel.name},
+        {"type", name_of(channel.type)},
+        {"components", channel.components},
+        {"encoding", channel.encoding == formats::Encoding::plain ? "plain" : "octahedral"},
+        {"raw_bytes", sizes[k].raw},
+        {"stored_bytes", sizes[k].stored},
+        {"ratio", ratio(sizes[k])}};
+    if (!statistics.empty()) {
+      Json components = Json::array();
+      for (const formats::ComponentStatistics& of : statistics[k]) {
+        components.push_back({{"min", of.min},  // null where no value is finite
+                              {"max", of.max},
+                              {"mean", of.mean()},
+                              {"finite", of.finite},
+                              {"non_finite", of.non_finite}});
+      }
+      entry["statistics"] = std::move(components);
+    }
+    channels.push_back(std::move(entry));
+  }
+  for (const formats::Pass& pass : reader.passes()) {
+    passes.push_back({{"first_record", pass.first}, {"records", pass.count}});
+  }
+  return {{"file", reader.path()},
+          {"version", {reader.head().major, reader.head().minor}},
+          {"uuid", reader.uuid()},
+          {"closed", reader.closed()},
+          {"records", reader.records()},
+          {"chunks", reader.chunks().size()},
+          {"file_bytes", reader.file_bytes()},
+          {"uncommitted_bytes", reader.uncommitted_bytes()},
+          {"passes", std::move(passes)},
+          {"channels", std::move(channels)},
+          {"metadata", Json::parse(reader.head().metadata)}};
+}
+
+formats::Metadata metadata_of(const formats::Reader& reader) {
+  try {
+    return formats::parse_metadata(reader.head().metadata);
+  } catch (const Error& error) {
+    throw Error(error.code(), fmt::format("{}: {}", reader.path(), error.what()));
+  }
+}
+
+void run(const InfoOptions& options) {
+  const core::ThreadLimit threads(options.common.threads);
+  const formats::Reader reader(options.input);
+  const formats::Metadata metadata = metadata_of(reader);
+  const std::vector<formats::ChannelSize> sizes = channel_sizes(reader);
+  Statistics statistics;
+  if (options.statistics) statistics = read_statistics(reader, options.common.quiet);
+
+  print_overview(reader, metadata);
+  print_cameras(metadata);
+  print_lights(metadata);
+  print_channels(reader, sizes);
+  if (options.statistics) print_statistics(reader, statistics);
+  if (!options.common.json.empty()) {
+    core::write_text_file(options.common.json, to_json(reader, sizes, statistics).dump(2) + "\n");
+  }
+}
+
+}  // namespace
+
+void add_info(CLI::App& app) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App* command = app.add_subcommand(
+      "info", "Show what a path-vertex buffer holds: channels, cameras, passes, sizes, metadata.");
+  command->add_option("input", options->input, "path-vertex buffer (.pvb)")
+      ->required()
+      ->type_name("FILE");
+  command->add_flag("--stats", options->statistics,
+                    "also smallest, largest and mean value of each channel, and how many are not "
+                    "finite; reads the whole file");
+  add_common(*command, options->common);
+  set_example(*command, "psf info scene.pvb --stats");
+  command->callback([options] { run(*options); });
+}
 
 }  // namespace psf::tools

@@ -1,8 +1,97 @@
-// psf verify
+// psf verify: checks every frame, checksum, total and padding byte of a path-vertex buffer.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli.h"
+#include "core/output_file.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "formats/check.h"
+#include "formats/error.h"
 #include "verbs.h"
 
 namespace psf::tools {
+namespace {
 
-void add_verify(CLI::App& app) { app.add_subcommand("verify"); }
+struct VerifyOptions {
+  CommonOptions common;
+  std::string input;
+};
+
+nlohmann::ordered_json to_json(const std::string& path, const formats::CheckReport& report) {
+  nlohmann::ordered_json faults = nlohmann::ordered_json::array();
+  for (const formats::Fault& fault : report.faults) {
+    nlohmann::ordered_json entry = {{"offset", fault.offset}, {"frame", fault.frame}};
+    if (fault.chunk) entry["chunk"] = *fault.chunk;
+    if (!fault.channel.empty()) entry["channel"] = fault.channel;
+    if (fault.records > 0) {
+      entry["first_record"] = fault.first;
+      entry["records"] = fault.records;
+    }
+    entry["message"] = fault.message;
+    faults.push_back(std::move(entry));
+  }
+  return {{"file", path},
+          {"whole", report.faults.empty()},
+          {"closed", report.closed},
+          {"records", report.records},
+          {"passes", report.passes},
+          {"file_bytes", report.file_bytes},
+          {"uncommitted_bytes", report.uncommitted_bytes},
+          {"frames", report.frames},
+          {"chunks", report.chunks},
+          {"columns", report.columns},
+          {"commits", report.commits},
+          {"faults", std::move(faults)}};
+}
+
+void run(const VerifyOptions& options) {
+  const core::ThreadLimit threads(options.common.threads);
+  std::unique_ptr<core::Progress> progress;
+  const formats::CheckReport report =
+      formats::check(options.input, [&](std::uint64_t done, std::uint64_t total) {
+        if (!progress) {
+          progress = std::make_unique<core::Progress>("verify", total, options.common.quiet);
+        }
+        progress->advance(done);
+      });
+  if (progress) progress->finish();
+
+  for (const formats::Fault& fault : report.faults) fmt::print("{}\n", fault.text());
+  if (!options.common.json.empty()) {
+    core::write_text_file(options.common.json, to_json(options.input, report).dump(2) + "\n");
+  }
+  const std::string tail = report.uncommitted_bytes == 0
+                               ? ""
+                               : fmt::format("; {} bytes behind the last commit are not committed",
+                                             report.uncommitted_bytes);
+  if (!report.faults.empty()) {
+    std::fflush(stdout);
+    throw Error(ErrorCode::comparison,
+                fmt::format("{}: {} fault{} in {} frames{}; restore it from a copy or render again",
+                            options.input, report.faults.size(),
+                            report.faults.size() == 1 ? "" : "s", report.frames, tail));
+  }
+  fmt::print("{}: whole: {} records in {} passes, {} columns in {} chunks, {}{}\n", options.input,
+             report.records, report.passes, report.columns, report.chunks,
+             report.closed ? "closed" : "not closed", tail);
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app) {
+  auto options = std::make_shared<VerifyOptions>();
+  CLI::App* command =
+      app.add_subcommand("verify", "Check every frame and checksum of a path-vertex buffer.");
+  command->add_option("input", options->input, "path-vertex buffer (.pvb)")
+      ->required()
+      ->type_name("FILE");
+  add_common(*command, options->common);
+  set_example(*command, "psf verify scene.pvb");
+  command->callback([options] { run(*options); });
+}
 
 }  // namespace psf::tools

@@ -1,0 +1,36 @@
+// The decoded columns that were read in part last: a reader of small ranges decodes each column
+// once.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace psf::formats {
+
+class ColumnCache {
+ public:
+  using Bytes = std::shared_ptr<const std::vector<std::byte>>;
+
+  // `most`: bytes kept, but always the newest column. Thread-safe.
+  explicit ColumnCache(std::size_t most) : most_(most) {}
+
+  // Null where it is not there.
+  [[nodiscard]] Bytes find(std::uint64_t chunk, std::size_t channel);
+  void insert(std::uint64_t chunk, std::size_t channel, Bytes bytes);
+
+ private:
+  struct Entry {
+    std::uint64_t chunk;
+    std::size_t channel;
+    Bytes bytes;
+  };
+  std::mutex mutex_;
+  std::list<Entry> entries_;  // the last used first
+  std::size_t most_, held_ = 0;
+};
+
+}  // namespace psf::formats

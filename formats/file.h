@@ -1,0 +1,45 @@
+// A POSIX file: positioned reads and writes that are whole or throw Error{io} with path and remedy.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace psf::formats {
+
+class File {
+ public:
+  // For reading; only regular files.
+  [[nodiscard]] static File open(const std::string& path);
+  // For writing, emptied. Refused where another process is writing it. The lock ends with the File.
+  [[nodiscard]] static File create(const std::string& path);
+
+  File(File&& other) noexcept;
+  File& operator=(File&& other) noexcept;
+  ~File();
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+  void set_path(const std::string& path) { path_ = path; }  // for messages, after a rename
+  [[nodiscard]] std::uint64_t size() const;
+
+  // Fills `out`; a file that ends before is an error. Thread-safe.
+  void read_at(std::uint64_t offset, std::span<std::byte> out) const;
+  // Writes the parts one behind the other; at most 1024 of them.
+  void write_at(std::uint64_t offset, std::span<const std::span<const std::byte>> parts);
+  void sync();  // fdatasync
+  void truncate(std::uint64_t size);
+  void close();  // throws where the system could not keep what was written
+
+ private:
+  File(std::string path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
+  [[noreturn]] void fail(const char* action) const;
+
+  std::string path_;
+  int descriptor_ = -1;
+};
+
+// Renames and makes the new name durable when `sync`.
+void rename_file(const std::string& from, const std::string& to, bool sync);
+
+}  // namespace psf::formats

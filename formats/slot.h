@@ -1,0 +1,30 @@
+// The frame SLOT: a page with two records of where the last commit is, written in turn; a hint.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "formats/file.h"
+#include "formats/frame.h"
+
+namespace psf::formats {
+
+struct SlotRecord {
+  std::uint64_t offset = 0, length = 0, sequence = 0;  // of the frame CMIT
+};
+
+[[nodiscard]] std::vector<std::byte> encode_slot_record(const SlotRecord& record);
+// Nothing where the checksum is wrong, as in a record that was never written.
+[[nodiscard]] std::optional<SlotRecord> decode_slot_record(std::span<const std::byte> bytes);
+
+// Within the page.
+[[nodiscard]] std::size_t slot_record_offset(std::uint64_t commit_number);
+
+// The records that are readable, the newest first. `offset`: of the frame SLOT, which follows HEAD.
+[[nodiscard]] std::vector<SlotRecord> read_slot(const File& file, std::uint64_t file_size,
+                                                std::uint64_t offset, const Uuid& uuid);
+
+}  // namespace psf::formats

@@ -1,0 +1,42 @@
+// The partition of a dump's paths into blocks.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "filter/parameters.h"
+
+namespace psf::filter {
+
+struct PathRange {
+  std::uint64_t first = 0, last = 0;  // [first, last)
+  [[nodiscard]] std::uint64_t size() const { return last - first; }
+  bool operator==(const PathRange&) const = default;
+};
+
+// Blocks of a range of passes. Blocks of b^m paths lie where s_i = floor(i / b^m) b^m of the whole
+// dump puts them, so that they stay the nets of the sequence, and are cut where the range begins
+// and ends; blocks of K passes are counted from the range's first pass. The last block may be
+// short.
+class Blocks {
+ public:
+  // pass_bounds[p]: first path of pass p, and one more entry, the end. Passes [first_pass,
+  // last_pass). Throws Error{limit} where a block has more than 2^31 - 1 paths.
+  Blocks(const BlockSize& size, std::vector<std::uint64_t> pass_bounds, std::size_t first_pass,
+         std::size_t last_pass);
+
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+  [[nodiscard]] PathRange operator[](std::uint64_t k) const;
+  [[nodiscard]] PathRange all() const { return all_; }
+
+ private:
+  BlockSize size_;
+  std::vector<std::uint64_t> bounds_;
+  std::size_t first_pass_, last_pass_;
+  PathRange all_;
+  std::uint64_t length_ = 0;  // power: b^m, or more than all paths
+  std::uint64_t count_ = 0;
+};
+
+}  // namespace psf::filter

@@ -1,0 +1,67 @@
+#include "filter/parameters.h"
+
+#include <cmath>
+
+#include "core/error.h"
+
+namespace psf::filter {
+namespace {
+
+void require(bool holds, const char* message) {
+  if (!holds) throw Error(ErrorCode::usage, message);
+}
+
+// NaN fails both.
+bool at_least_zero(const std::optional<float>& t) {
+  return !t || *t >= 0;
+}
+bool is_cosine(const std::optional<float>& t) {
+  return !t || (*t >= -1 && *t <= 1);
+}
+
+}  // namespace
+
+WeightTerms WeightTerms::none() {
+  WeightTerms terms;
+  terms.normal.reset();
+  terms.reflectance.reset();
+  return terms;
+}
+
+void Parameters::validate() const {
+  require(std::isfinite(radius.r0) && radius.r0 >= 0, "--r0: the radius must be finite and >= 0");
+  require(radius.delta >= 0 && radius.delta < 1,
+          "--delta: must be in [0, 1); 0 keeps the radius fixed");
+  require(block.base >= 2, "--block: the base of b^m must be at least 2");
+  require(block.exponent < 64, "--block: the exponent of b^m must be below 64");
+  require(block.passes >= 1, "--block: at least one pass");
+  require(is_cosine(weights.normal), "--normal: the threshold is a cosine in [-1, 1]");
+  require(at_least_zero(weights.reflectance), "--reflectance: the threshold must be >= 0");
+  require(at_least_zero(weights.hit_distance), "--hit-distance: the threshold must be >= 0");
+  require(at_least_zero(weights.plane), "--plane: the threshold must be >= 0");
+  require(is_cosine(weights.direction), "--direction: the threshold is a cosine in [-1, 1]");
+  require(iterations >= 1, "--iterations: at least 1");
+  require(sources >= 1, "--sources: 1/K with K >= 1");
+}
+
+std::vector<ChannelNeed> optional_channels(const Parameters& parameters) {
+  std::vector<ChannelNeed> needs;
+  const auto need = [&needs](bool wanted, std::string_view channel, std::string_view by) {
+    if (wanted) needs.push_back({channel, by});
+  };
+  const WeightTerms& weights = parameters.weights;
+  const bool disk = parameters.estimator == Estimator::disk;
+  need(weights.normal.has_value(), "normal", "--normal");
+  need(weights.plane.has_value(), "normal", "--plane");
+  need(disk, "normal", "--estimator disk");
+  need(weights.reflectance.has_value(), "reflectance", "--reflectance");
+  need(parameters.demodulate, "reflectance", "--demodulate");
+  need(weights.visibility, "visibility", "--visibility");
+  need(weights.hit_distance.has_value(), "hit_distance", "--hit-distance");
+  need(weights.direction.has_value(), "direction", "--direction");
+  need(disk, "direction", "--estimator disk");
+  need(weights.material, "material", "--material");
+  return needs;
+}
+
+}  // namespace psf::filter

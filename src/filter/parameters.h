@@ -1,0 +1,84 @@
+// Every parameter of the filter, with its default. The equations are in README.md.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "search/search.h"
+
+namespace psf::filter {
+
+// f_i of [radius].
+enum class RadiusBasis : std::uint8_t {
+  distance,   // d_i: r0 is a fraction of it
+  footprint,  // d_i times the camera's angle per pixel: r0 is in pixels
+  world       // 1: r0 is in world units
+};
+
+// n of [radius].
+enum class RadiusCount : std::uint8_t {
+  samples,  // samples per pixel accumulated up to the end of the block
+  blocks    // blocks up to and with this one
+};
+
+struct Radius {
+  double r0 = 0.02;  // >= 0; 0 filters nothing
+  RadiusBasis basis = RadiusBasis::distance;
+  // 0 <= delta < 1. 0 keeps the radius fixed: no longer consistent, but useful to look at one
+  // radius.
+  double delta = 1.0 / 3;
+  RadiusCount count = RadiusCount::samples;
+};
+
+// Which paths are averaged with each other.
+struct BlockSize {
+  enum class Kind : std::uint8_t { power, passes, all };
+  Kind kind = Kind::passes;
+  std::uint32_t base = 2, exponent = 16;  // power: base^exponent contiguous paths, base >= 2
+  std::uint64_t passes = 1;               // passes: this many, >= 1
+};
+
+// The terms of w_ij; a threshold that is not set switches its term off.
+struct WeightTerms {
+  std::optional<float> normal = 0.95f;       // n_i . n_j >= t, t in [-1, 1]
+  std::optional<float> reflectance = 0.05f;  // norm(rho_i - rho_j) <= t, t >= 0
+  bool visibility = false;                   // equal bits
+  std::optional<float> hit_distance;         // relative difference <= t, t >= 0
+  std::optional<float> plane;                // abs((x_j - x_i) . n_i) <= t r_i, t >= 0
+  std::optional<float> direction;            // omega_i . omega_j >= t, t in [-1, 1]
+  bool material = false;                     // equal
+
+  [[nodiscard]] static WeightTerms none();
+};
+
+enum class Estimator : std::uint8_t {
+  average,  // [average]
+  disk      // [disk], photon mapping's: divided by the area of the ball's disk
+};
+
+struct Parameters {
+  Radius radius;
+  BlockSize block;
+  WeightTerms weights;
+  bool demodulate = false;       // average c_j / rho_j, multiply by rho_i
+  std::uint32_t iterations = 1;  // >= 1
+  std::uint32_t sources = 1;  // K >= 1: one record in K is a source, the others are queries alone
+  Estimator estimator = Estimator::average;
+  search::Kind search = search::Kind::plain;
+  bool count_refusals = false;  // by term; costs the evaluation of every term for every candidate
+
+  // Throws Error{usage} naming the parameter and what it may be.
+  void validate() const;
+};
+
+// A channel that parameters need, and which of them: {"visibility", "--visibility"}.
+struct ChannelNeed {
+  std::string_view channel, wanted_by;
+};
+// Beyond `position`, `throughput`, `contribution`, `distance` and `pixel`, which every dump has.
+[[nodiscard]] std::vector<ChannelNeed> optional_channels(const Parameters& parameters);
+
+}  // namespace psf::filter

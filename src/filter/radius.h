@@ -1,0 +1,36 @@
+// [radius]: how far a record looks, shrinking as samples accumulate.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "filter/parameters.h"
+#include "filter/records.h"
+
+namespace psf::filter {
+
+// r0 / sqrt(n^delta). Before the first sample per pixel is complete n counts as 1: no radius
+// exceeds r0 f_i.
+[[nodiscard]] inline double radius_scale(const Radius& radius, double n) {
+  return radius.r0 / std::sqrt(std::pow(std::max(1.0, n), radius.delta));
+}
+
+// r_i in world units for every record, 0 where d_i is negative. `distance` is read unless the basis
+// is `world`.
+inline void radii(const Radius& radius, const Records& records, const Block& block,
+                  std::vector<float>& out) {
+  const double scale = radius_scale(radius, block.n);
+  out.assign(records.size(), static_cast<float>(scale));
+  if (radius.basis == RadiusBasis::world) return;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    double f = std::max(0.0, double{records.distance[i]});
+    if (radius.basis == RadiusBasis::footprint) {
+      f *= block.cameras[records.camera.empty() ? 0 : records.camera[i]].angle_per_pixel;
+    }
+    out[i] = static_cast<float>(scale * f);
+  }
+}
+
+}  // namespace psf::filter

@@ -1,0 +1,48 @@
+// What a filter run counted and how long it took; blocks add up.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "filter/weights.h"
+
+namespace psf::filter {
+
+// Channels whose non-finite values take a record out of the averages.
+inline constexpr std::size_t kCheckedChannels = 9;
+inline constexpr std::array<const char*, kCheckedChannels> kCheckedNames = {
+    "unfiltered", "throughput",  "position",     "distance", "contribution",
+    "normal",     "reflectance", "hit_distance", "direction"};
+
+struct Statistics {
+  std::uint64_t records = 0;
+  std::uint64_t without_vertex = 0;  // contribute u_i alone
+  std::uint64_t queries = 0;         // records with a vertex, in use
+  std::uint64_t sources = 0;         // of them, those averaged from
+
+  std::uint64_t left_out = 0;  // records left out of averages and pictures
+  // Of those, by channel of kCheckedNames; a record counts for each channel that is bad.
+  std::array<std::uint64_t, kCheckedChannels> non_finite{};
+  std::uint64_t without_source = 0;  // queries of blocks that have no source at all, left out too
+
+  std::uint64_t candidates = 0;  // pairs (i, j) with chi = 1, self included
+  std::uint64_t accepted = 0;    // of them, w_ij = 1
+  std::uint64_t min_neighbors = std::numeric_limits<std::uint64_t>::max();  // of a query; accepted
+  std::uint64_t max_neighbors = 0;
+  // Pairs that a term refuses whatever the others say, by term of kTermNames; only where asked for.
+  std::array<std::uint64_t, kTermCount> refused{};
+  std::uint64_t orphans = 0;            // queries without a source in their ball
+  std::uint64_t orphans_unmatched = 0;  // of them, those no source passes the weights of
+
+  double seconds_index = 0;   // roles, order, building the index
+  double seconds_filter = 0;  // search, weights and sums
+
+  Statistics& operator+=(const Statistics& other);
+  [[nodiscard]] double mean_neighbors() const {
+    return queries == 0 ? 0 : static_cast<double>(accepted) / static_cast<double>(queries);
+  }
+};
+
+}  // namespace psf::filter

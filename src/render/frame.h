@@ -1,0 +1,74 @@
+// Directions: orthonormal frames and the mappings from [0, 1)^2 to the sphere and its parts.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/vec.h"
+
+namespace psf::render {
+
+constexpr float kPi = std::numbers::pi_v<float>;
+constexpr float kInvPi = std::numbers::inv_pi_v<float>;
+
+// The caller knows that v is not zero.
+[[nodiscard]] inline Vec3 normalize(const Vec3& v) {
+  return v * (1 / std::sqrt(length_sq(v)));
+}
+
+// Local coordinates have n as z. Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
+struct Frame {
+  explicit Frame(const Vec3& normal) : n(normal) {
+    const float sign = std::copysign(1.0f, n.z);
+    const float a = -1 / (sign + n.z);
+    const float b = n.x * n.y * a;
+    s = Vec3(1 + sign * n.x * n.x * a, sign * b, -sign * n.x);
+    t = Vec3(b, sign + n.y * n.y * a, -n.y);
+  }
+  [[nodiscard]] Vec3 to_local(const Vec3& v) const { return {dot(v, s), dot(v, t), dot(v, n)}; }
+  [[nodiscard]] Vec3 to_world(const Vec3& v) const { return s * v.x + t * v.y + n * v.z; }
+
+  Vec3 s, t, n;
+};
+
+// The unit vector at height z whose squared distance from the axis is r_sq, at angle 2 pi u.
+[[nodiscard]] inline Vec3 around_axis(float u, float r_sq, float z) {
+  const float phi = 2 * kPi * u, r = std::sqrt(std::max(0.0f, r_sq));
+  return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+// Density cos / pi about +z.
+[[nodiscard]] inline Vec3 cosine_hemisphere(const Vec2& u) {
+  return around_axis(u.x, u.y, std::sqrt(1 - u.y));
+}
+
+// Density 1 / (4 pi).
+[[nodiscard]] inline Vec3 uniform_sphere(const Vec2& u) {
+  const float z = 1 - 2 * u.y;
+  return around_axis(u.x, 4 * u.y * (1 - u.y), z);
+}
+
+// Uniform in the cone about +z; `height` = 1 - cos of its half angle, which keeps narrow cones
+// exact. Density 1 / (2 pi height).
+[[nodiscard]] inline Vec3 uniform_cone(const Vec2& u, float height) {
+  const float h = u.y * height;
+  return around_axis(u.x, h * (2 - h), 1 - h);
+}
+[[nodiscard]] inline float cone_pdf(float height) {
+  return 1 / (2 * kPi * height);
+}
+
+// 1 - cos from sin^2, exact for small angles.
+[[nodiscard]] inline float one_minus_cos(float sin_sq) {
+  return sin_sq / (1 + std::sqrt(std::max(0.0f, 1 - sin_sq)));
+}
+
+// The weight of a sample with density `a` where `b` is the other strategy's (power heuristic, Veach
+// 1997). Neither a huge nor a zero `b` makes it non-finite; a > 0.
+[[nodiscard]] inline float mis_weight(float a, float b) {
+  const float ratio = b / a;
+  return 1 / (1 + ratio * ratio);
+}
+
+}  // namespace psf::render

@@ -1,0 +1,240 @@
+#include "render/json_cursor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <numeric>
+#include <set>
+
+#include "formats/error.h"
+
+namespace psf::render {
+namespace {
+
+using nlohmann::json;
+
+// "3:17", both from 1, of the byte at `offset`.
+std::string line_and_column(const std::string& text, std::size_t offset) {
+  const std::string_view before = std::string_view(text).substr(0, std::min(offset, text.size()));
+  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+  const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 = 0
+  return fmt::format("{}:{}", line, before.size() - line_start + 1);
+}
+
+// "syntax error while parsing value - unexpected '}'" of nlohmann's longer message.
+std::string reason(const std::string& what) {
+  std::size_t begin = what.find("] ");
+  begin = begin == std::string::npos ? 0 : begin + 2;
+  const std::size_t column = what.find("column", begin);
+  if (column != std::string::npos && what.find(": ", column) != std::string::npos) {
+    begin = what.find(": ", column) + 2;
+  }
+  return what.substr(begin);
+}
+
+std::string quoted(const json& value) {
+  constexpr std::size_t kMost = 60;
+  std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  if (text.size() > kMost) text = text.substr(0, kMost) + "...";
+  return text;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
+      diagonal = above;
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string suggestion(std::string_view word, std::span<const std::string_view> known) {
+  std::size_t best = word.size() / 3 + 2;  // farther is no typing error
+  std::string text;
+  for (const std::string_view candidate : known) {
+    const std::size_t distance = edit_distance(word, candidate);
+    if (distance < best) {
+      best = distance;
+      text = fmt::format("; did you mean \"{}\"?", candidate);
+    }
+  }
+  return text;
+}
+
+json read_json(const std::string& path) {
+  if (std::filesystem::is_directory(path))
+    throw Error(ErrorCode::io, path + ": is a folder, a file is needed");
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+    throw Error(ErrorCode::io, fmt::format("{}: cannot open: {}", path, std::strerror(errno)));
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+
+  std::vector<std::set<std::string>> keys;  // of the objects around the current place
+  std::string doubled;
+  const auto watch = [&](int, json::parse_event_t event, json& parsed) {
+    if (event == json::parse_event_t::object_start) keys.emplace_back();
+    if (event == json::parse_event_t::object_end) keys.pop_back();
+    if (event == json::parse_event_t::key &&
+        !keys.back().insert(parsed.get<std::string>()).second) {
+      doubled = parsed.get<std::string>();
+    }
+    return true;
+  };
+  try {
+    json document = json::parse(text, watch);
+    if (!doubled.empty()) {
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("{}: the key \"{}\" is twice in one object", path, doubled));
+    }
+    return document;
+  } catch (const json::parse_error& error) {
+    const std::size_t offset = error.byte == 0 ? 0 : error.byte - 1;
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}:{}: malformed JSON: {}", path, line_and_column(text, offset),
+                            reason(error.what())));
+  } catch (const json::exception& error) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: malformed JSON: {}", path, reason(error.what())));
+  }
+}
+
+void JsonCursor::fail(const std::string& problem) const {
+  throw Error(ErrorCode::bad_input, where() + ": " + problem);
+}
+
+void JsonCursor::expected(const std::string& what) const {
+  fail(fmt::format("expected {}, got {}", what, quoted(*value_)));
+}
+
+void JsonCursor::check_keys(std::span<const std::string_view> known) const {
+  if (!value_->is_object()) expected("an object");
+  for (const auto& [key, value] : value_->items()) {
+    if (key == "comment" || std::find(known.begin(), known.end(), key) != known.end()) continue;
+    fail(fmt::format("unknown key \"{}\"{}", key, suggestion(key, known)));
+  }
+}
+
+std::optional<JsonCursor> JsonCursor::find(std::string_view key) const {
+  if (!value_->is_object()) expected("an object");
+  const auto found = value_->find(key);
+  if (found == value_->end()) return std::nullopt;
+  return JsonCursor(*found, file_, fmt::format("{}/{}", path_, key));
+}
+
+JsonCursor JsonCursor::at(std::string_view key) const {
+  auto found = find(key);
+  if (!found) fail(fmt::format("the key \"{}\" is missing", key));
+  return *found;
+}
+
+std::vector<JsonCursor> JsonCursor::items() const {
+  if (!value_->is_array()) expected("an array");
+  std::vector<JsonCursor> result;
+  result.reserve(value_->size());
+  for (std::size_t i = 0; i < value_->size(); ++i) {
+    result.push_back(JsonCursor((*value_)[i], file_, fmt::format("{}/{}", path_, i)));
+  }
+  return result;
+}
+
+std::vector<JsonCursor> JsonCursor::items(std::string_view key) const {
+  const auto found = find(key);
+  return found ? found->items() : std::vector<JsonCursor>{};
+}
+
+float JsonCursor::number(const Range& range) const {
+  const double value = value_->is_number() ? value_->get<double>() : 2 * range.max;
+  if (!(value >= range.min && value <= range.max)) expected(fmt::format("a number {}", range.text));
+  return static_cast<float>(value);
+}
+
+std::uint32_t JsonCursor::integer(std::uint32_t min, std::uint32_t max) const {
+  const bool fits = value_->is_number_unsigned() && value_->get<std::uint64_t>() >= min &&
+                    value_->get<std::uint64_t>() <= max;
+  if (!fits) expected(fmt::format("a whole number from {} to {}", min, max));
+  return value_->get<std::uint32_t>();
+}
+
+bool JsonCursor::boolean() const {
+  if (!value_->is_boolean()) expected("true or false");
+  return value_->get<bool>();
+}
+
+std::string JsonCursor::text() const {
+  if (!value_->is_string()) expected("a text in quotes");
+  return value_->get<std::string>();
+}
+
+std::size_t JsonCursor::choice(std::span<const std::string_view> known) const {
+  const std::string word = text();
+  const auto found = std::find(known.begin(), known.end(), word);
+  if (found == known.end()) {
+    expected(fmt::format("one of {}", fmt::join(known, ", ")));
+  }
+  return static_cast<std::size_t>(found - known.begin());
+}
+
+void JsonCursor::read_numbers(std::span<float> out, const Range& range) const {
+  if (!value_->is_array() || value_->size() != out.size()) {
+    expected(fmt::format("an array of {} numbers", out.size()));
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const json& item = (*value_)[i];
+    const double value = item.is_number() ? item.get<double>() : 2 * range.max;
+    if (!(value >= range.min && value <= range.max)) {
+      JsonCursor(item, file_, fmt::format("{}/{}", path_, i))
+          .expected(fmt::format("a number {}", range.text));
+    }
+    out[i] = static_cast<float>(value);
+  }
+}
+
+Vec2 JsonCursor::vec2(const Range& range) const {
+  std::array<float, 2> v{};
+  read_numbers(v, range);
+  return {v[0], v[1]};
+}
+
+Vec3 JsonCursor::vec3(const Range& range) const {
+  std::array<float, 3> v{};
+  read_numbers(v, range);
+  return {v[0], v[1], v[2]};
+}
+
+Vec3 JsonCursor::direction() const {
+  const Vec3 v = vec3();
+  const float length = v.length();
+  if (!(length > 0) || !std::isfinite(length))
+    expected("a direction, three numbers that are not all zero");
+  return v / length;
+}
+
+Rgb JsonCursor::rgb(const Range& range) const {
+  if (value_->is_number()) return Rgb(number(range));
+  if (!value_->is_array() || value_->size() != 3) {
+    expected(fmt::format("a number {} or an array of 3", range.text));
+  }
+  const Vec3 v = vec3(range);
+  return {v.x, v.y, v.z};
+}
+
+std::vector<float> JsonCursor::numbers(std::size_t count) const {
+  std::vector<float> v(count);
+  read_numbers(v, kAnyNumber);
+  return v;
+}
+
+}  // namespace psf::render

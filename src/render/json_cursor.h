@@ -1,0 +1,85 @@
+// A place in a JSON document that knows its path, with typed getters whose errors name file and
+// place.
+#pragma once
+
+#include <cfloat>
+#include <cstddef>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace psf::render {
+
+// Numbers that a getter takes; `text` ends the sentence "expected a number ...".
+struct Range {
+  double min = -FLT_MAX, max = FLT_MAX;
+  const char* text = "that fits a 32-bit float";
+};
+constexpr Range kAnyNumber{};
+constexpr Range kUnitRange{0, 1, "in [0, 1]"};
+constexpr Range kNonNegative{0, FLT_MAX, ">= 0"};
+constexpr Range kPositive{FLT_MIN, FLT_MAX, "> 0"};
+
+// Reads and parses. Throws Error{io} where the file cannot be read, Error{bad_input} with line and
+// column where it is malformed or an object has the same key twice.
+[[nodiscard]] nlohmann::json read_json(const std::string& path);
+
+// All getters throw Error{bad_input}: "cornell.json: /materials/2/roughness: expected a number in
+// [0, 1], got "shiny"". A cursor points into the document and must not outlive it.
+class JsonCursor {
+ public:
+  JsonCursor(const nlohmann::json& root, std::string file)
+      : value_(&root), file_(std::move(file)) {}
+
+  // This is an object with no keys but these and "comment", else the error suggests the nearest of
+  // them.
+  void check_keys(std::span<const std::string_view> known) const;
+  void check_keys(std::initializer_list<std::string_view> known) const {
+    check_keys(std::span(known.begin(), known.size()));
+  }
+  [[nodiscard]] JsonCursor at(std::string_view key) const;  // of an object; missing: an error
+  [[nodiscard]] std::optional<JsonCursor> find(std::string_view key) const;
+  [[nodiscard]] std::vector<JsonCursor> items() const;  // of an array
+  // Items of the array under `key`, none where the key is missing.
+  [[nodiscard]] std::vector<JsonCursor> items(std::string_view key) const;
+
+  [[nodiscard]] bool is_array() const { return value_->is_array(); }
+  [[nodiscard]] bool is_text() const { return value_->is_string(); }
+  [[nodiscard]] float number(const Range& range = kAnyNumber) const;
+  [[nodiscard]] std::uint32_t integer(std::uint32_t min, std::uint32_t max) const;
+  [[nodiscard]] bool boolean() const;
+  [[nodiscard]] std::string text() const;
+  // One of `known`; its index.
+  [[nodiscard]] std::size_t choice(std::span<const std::string_view> known) const;
+  [[nodiscard]] Vec2 vec2(const Range& range = kAnyNumber) const;
+  [[nodiscard]] Vec3 vec3(const Range& range = kAnyNumber) const;
+  [[nodiscard]] Vec3 direction() const;             // normalised; zero: an error
+  [[nodiscard]] Rgb rgb(const Range& range) const;  // [r, g, b] or one number for grey
+  [[nodiscard]] std::vector<float> numbers(std::size_t count) const;
+
+  [[nodiscard]] const std::string& file() const { return file_; }
+  [[nodiscard]] std::string path() const { return path_.empty() ? "/" : path_; }  // JSON pointer
+  [[nodiscard]] std::string where() const { return file_ + ": " + path(); }
+  [[noreturn]] void fail(const std::string& problem) const;
+  [[noreturn]] void expected(const std::string& what) const;  // "expected what, got the value"
+
+ private:
+  JsonCursor(const nlohmann::json& value, std::string file, std::string path)
+      : value_(&value), file_(std::move(file)), path_(std::move(path)) {}
+  void read_numbers(std::span<float> out, const Range& range) const;
+
+  const nlohmann::json* value_;
+  std::string file_, path_;
+};
+
+// "; did you mean "glass"?" for the nearest of `known`, or nothing where none is near.
+[[nodiscard]] std::string suggestion(std::string_view word,
+                                     std::span<const std::string_view> known);
+
+}  // namespace psf::render

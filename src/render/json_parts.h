@@ -1,0 +1,39 @@
+// The parts of the JSON scene loader. The schema is in sample_data/README.md.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "render/json_cursor.h"
+#include "render/load_parts.h"
+#include "render/scene.h"
+
+namespace psf::render {
+
+// What the parts share while one JSON file is read.
+struct JsonLoad {
+  Scene& scene;
+  TextureTable textures;
+  std::size_t primitives = 0;  // triangles and spheres so far, copies included
+
+  explicit JsonLoad(Scene& target) : scene(target), textures(target) {}
+};
+
+// One material of "materials"; its name must be new.
+void read_material(const JsonCursor& json, JsonLoad& load);
+// Index of the material that the key "material" names; kNone where the key is missing and
+// `required` is false.
+[[nodiscard]] int read_material_name(const JsonCursor& json, const Scene& scene, bool required);
+
+// A transform: one step or a list of steps, applied in order.
+[[nodiscard]] Mat4 read_transform(const JsonCursor& json);
+// The keys "transform" and "repeat" of a shape: where each copy goes, at least one. Throws
+// Error{limit} where there are more than kMaxCopies.
+[[nodiscard]] std::vector<Mat4> read_placements(const JsonCursor& json);
+
+// A shape and its copies, at all of `placements` (copies of the group around it).
+void read_shape(const JsonCursor& json, const std::vector<Mat4>& placements, JsonLoad& load,
+                int depth = 0);
+
+}  // namespace psf::render

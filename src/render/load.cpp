@@ -1,0 +1,101 @@
+#include "render/load.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "formats/error.h"
+#include "render/load_parts.h"
+
+namespace psf::render {
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+// `name` in `folder`, or the entry that differs from it in case alone; empty where there is
+// neither.
+fs::path find_entry(const fs::path& folder, const std::string& name) {
+  std::error_code error;
+  if (fs::exists(folder / name, error)) return folder / name;
+  fs::path found;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string candidate = entry.path().filename().string();
+    // The first in alphabetical order: the order of a folder's entries is the file system's.
+    if (lower(candidate) == lower(name) && (found.empty() || entry.path() < found))
+      found = entry.path();
+  }
+  return found;
+}
+
+}  // namespace
+
+std::string find_file(const std::string& beside, const std::string& file) {
+  std::error_code error;
+  const fs::path folder = fs::path(beside).parent_path();
+  const fs::path plain = folder / file;
+  if (fs::exists(plain, error)) return plain.string();
+  std::string slashes = file;
+  std::replace(slashes.begin(), slashes.end(), '\\', '/');
+  const fs::path parts(slashes);
+  fs::path place =
+      parts.is_absolute() ? parts.root_path() : (folder.empty() ? fs::path(".") : folder);
+  for (const fs::path& part : parts.relative_path()) {
+    place = find_entry(place, part.string());
+    if (place.empty()) return plain.string();
+  }
+  return place.string();
+}
+
+int TextureTable::load(const std::string& scene_file, const std::string& file,
+                       ColorSpace color_space, const std::string& wanted_by) {
+  const std::string path = find_file(scene_file, file);
+  const auto [entry, is_new] = known_.try_emplace({path, color_space}, kNone);
+  if (!is_new) return entry->second;
+  try {
+    scene_.textures.push_back(Texture::load(path, color_space));
+  } catch (const Error& error) {
+    throw Error(error.code(), wanted_by + ": " + error.what());
+  }
+  entry->second = static_cast<int>(scene_.textures.size()) - 1;
+  return entry->second;
+}
+
+void load_mesh_file(const std::string& path, Scene& scene) {
+  const std::string extension = lower(fs::path(path).extension().string());
+  if (extension == ".obj") return load_obj(path, scene);
+  if (extension == ".gltf" || extension == ".glb") return load_gltf(path, scene);
+  throw Error(ErrorCode::bad_input,
+              path + ": not a kind of mesh file that psf reads (.obj, .gltf, .glb)");
+}
+
+Scene load_scene(const std::string& path, const SceneOverrides& overrides) {
+  std::error_code error;
+  if (!fs::exists(path, error)) throw Error(ErrorCode::io, path + ": no such file");
+  if (fs::is_directory(path, error))
+    throw Error(ErrorCode::io, path + ": is a folder, a scene file is needed");
+  Scene scene;
+  scene.name = fs::path(path).filename().string();
+  const std::string extension = lower(fs::path(path).extension().string());
+  if (extension == ".json") {
+    load_json(path, scene);
+  } else if (extension == ".obj" || extension == ".gltf" || extension == ".glb") {
+    load_mesh_file(path, scene);
+  } else {
+    throw Error(ErrorCode::bad_input,
+                path + ": not a kind of scene that psf reads (.json, .obj, .gltf, .glb)");
+  }
+  validate(path, scene);  // first: the automatic camera needs finite geometry
+  apply_overrides(overrides, scene);
+  scene.hash = hash_of(scene);
+  return scene;
+}
+
+}  // namespace psf::render

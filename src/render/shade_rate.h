@@ -1,0 +1,22 @@
+// Which paths are shaded when one in K is: a lattice over the pixels that moves from pass to pass.
+#pragma once
+
+#include <cstdint>
+
+namespace psf::render {
+
+// Path of pixel (x, y) in a pass is shaded where x + b y + c pass = 0 (mod K). Any K neighbours in
+// a row hold one shaded path, any K passes shade each pixel once, b makes the shaded pixels of a
+// pass lie as far apart as a lattice can, c sends consecutive passes to distant residues.
+class ShadeRate {
+ public:
+  explicit ShadeRate(std::uint32_t k);  // 1 to 65536
+  [[nodiscard]] bool shaded(std::uint32_t x, std::uint32_t y, std::uint64_t pass) const {
+    return k_ == 1 || (x + std::uint64_t{b_} * y + c_ * (pass % k_)) % k_ == 0;
+  }
+
+ private:
+  std::uint32_t k_, b_, c_;
+};
+
+}  // namespace psf::render

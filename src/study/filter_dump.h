@@ -1,0 +1,49 @@
+// A whole dump through the filter, block by block, into pictures.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "filter/parameters.h"
+#include "filter/statistics.h"
+#include "study/dump.h"
+#include "study/pictures.h"
+
+namespace psf::study {
+
+// Passes [first, last) of a dump, counted from 0; `last` not set: to the end.
+struct PassSelection {
+  std::size_t first = 0;
+  std::optional<std::size_t> last;
+};
+
+struct FilterRun {
+  filter::Parameters parameters;
+  PassSelection passes;  // act as a dump of their own, but that blocks of b^m stay where they are
+  std::vector<std::uint64_t>
+      snapshots;  // pictures after so many of the passes, ascending, each at least 1
+  // All paths of the first `passes` passes, each filtered with its whole block. One entry a camera.
+  std::function<void(std::uint64_t passes, std::span<const CameraPictures>)> on_snapshot;
+  std::function<void(std::uint64_t done, std::uint64_t total)>
+      on_progress;  // paths, after every block
+};
+
+struct FilterOutcome {
+  std::vector<CameraPictures> pictures;  // one a camera
+  filter::Statistics statistics;
+  std::uint64_t passes = 0, blocks = 0;
+  std::uint64_t overflows =
+      0;                    // paths left out because throughput times average is no finite float
+  double seconds_read = 0;  // reading and decoding
+  double seconds_film = 0;  // adding up pictures
+};
+
+// Memory: the records of one block, what the filter needs on top, and the pictures. Throws what
+// Dump, Blocks and average() throw, Error{usage} for passes or snapshots that the dump does not
+// have, Error{interrupted}.
+[[nodiscard]] FilterOutcome filter_dump(const Dump& dump, const FilterRun& run);
+
+}  // namespace psf::study

@@ -1,0 +1,78 @@
+#include "study/pictures.h"
+
+namespace psf::study {
+namespace {
+
+// One of the three values of every pixel.
+std::vector<float> component(const std::vector<float>& triples, std::size_t k) {
+  std::vector<float> values(triples.size() / 3);
+  for (std::size_t pixel = 0; pixel < values.size(); ++pixel)
+    values[pixel] = triples[3 * pixel + k];
+  return values;
+}
+
+Rgb path_radiance(const Rgb& u, const Rgb& alpha, const Rgb& c) {
+  return {u.x + alpha.x * c.x, u.y + alpha.y * c.y, u.z + alpha.z * c.z};
+}
+
+}  // namespace
+
+CameraPictures::CameraPictures(const filter::CameraView& camera, bool with_albedo, bool with_normal)
+    : filtered_(camera.width, camera.height),
+      unfiltered_(camera.width, camera.height),
+      details_(camera.width, camera.height),
+      with_albedo_(with_albedo),
+      with_normal_(with_normal),
+      albedo_(with_albedo ? camera.width : 0, with_albedo ? camera.height : 0),
+      normal_(with_normal ? camera.width : 0, with_normal ? camera.height : 0) {}
+
+bool CameraPictures::add(const filter::Records& records, const filter::Average& average,
+                         std::span<const float> radius, std::size_t i) {
+  const filter::Role role = average.roles[i];
+  if (role == filter::Role::left_out) return true;
+  const std::uint32_t pixel = records.pixel[i];
+  const Rgb u = records.unfiltered.empty() ? Rgb(0, 0, 0) : records.unfiltered[i];
+  const bool vertex = role != filter::Role::no_vertex;
+  if (!vertex) {
+    filtered_.add(pixel, u);
+    unfiltered_.add(pixel, u);
+  } else {
+    const Rgb& alpha = records.throughput[i];
+    const Rgb filtered = path_radiance(u, alpha, average.c_bar[i]);
+    const bool source = role == filter::Role::source;
+    const Rgb input = source ? path_radiance(u, alpha, records.contribution[i]) : filtered;
+    if (!is_finite(filtered) || !is_finite(input)) return false;
+    filtered_.add(pixel, filtered);
+    if (source) unfiltered_.add(pixel, input);
+    details_.add(pixel, Rgb(static_cast<float>(average.neighbors[i]), radius[i], 0));
+  }
+  add_guides(records, i, vertex);
+  return true;
+}
+
+void CameraPictures::add_guides(const filter::Records& records, std::size_t i, bool vertex) {
+  if (with_albedo_) {
+    const Rgb albedo = vertex ? records.reflectance[i] : Rgb(0, 0, 0);
+    if (is_finite(albedo)) albedo_.add(records.pixel[i], albedo);
+  }
+  if (with_normal_) {
+    const Vec3 normal = vertex ? records.normal[i] : Vec3(0, 0, 0);
+    if (is_finite(normal)) normal_.add(records.pixel[i], Rgb(normal.x, normal.y, normal.z));
+  }
+}
+
+film::Image CameraPictures::image() const {
+  film::Image image;
+  image.width = filtered_.width();
+  image.height = filtered_.height();
+  image.add("", "RGB", filtered_.mean());
+  image.add("unfiltered-input.", "RGB", unfiltered_.mean());
+  const std::vector<float> details = details_.mean();
+  image.add("neighbors.", "Y", component(details, 0));
+  image.add("radius.", "Y", component(details, 1));
+  if (with_albedo_) image.add("albedo.", "RGB", albedo_.mean());
+  if (with_normal_) image.add("normal.", "XYZ", normal_.mean());
+  return image;
+}
+
+}  // namespace psf::study

@@ -1,0 +1,37 @@
+// What a filter run shows of one camera: the picture, what went in, and what helps to understand
+// it.
+#pragma once
+
+#include <span>
+
+#include "film/film.h"
+#include "film/image.h"
+#include "filter/average.h"
+#include "filter/records.h"
+
+namespace psf::study {
+
+class CameraPictures {
+ public:
+  CameraPictures(const filter::CameraView& camera, bool with_albedo, bool with_normal);
+
+  // [pixel]: adds record i of a filtered block. In path order, from one thread. Returns false where
+  // the radiance overflows; then the path is left out.
+  bool add(const filter::Records& records, const filter::Average& average,
+           std::span<const float> radius, std::size_t i);
+
+  // R, G, B filtered; unfiltered-input.R/G/B of the same paths, without those that have no
+  // contribution of their own; neighbors.Y and radius.Y, means over the paths with a vertex;
+  // albedo.R/G/B and normal.X/Y/Z where asked for, 0 where a path has no vertex.
+  [[nodiscard]] film::Image image() const;
+
+ private:
+  void add_guides(const filter::Records& records, std::size_t i, bool vertex);
+
+  film::Film filtered_, unfiltered_;
+  film::Film details_;  // neighbours, radius, 0
+  bool with_albedo_, with_normal_;
+  film::Film albedo_, normal_;
+};
+
+}  // namespace psf::study

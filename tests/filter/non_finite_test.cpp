@@ -1,0 +1,148 @@
+// Non-finite input is counted by channel, left out, and never spreads.
+#include <functional>
+#include <limits>
+
+#include "catch.h"
+#include "filter/average.h"
+#include "filter/radius.h"
+#include "record_set.h"
+
+namespace psf {
+namespace {
+
+using filter::Parameters;
+using tests::RecordSet;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+const std::vector<filter::CameraView> kCamera = {{30, 30, 0.05}};
+
+struct Damage {
+  const char* channel;
+  std::function<void(RecordSet&, std::size_t, float)> apply;
+  bool infinity_is_bad = true;
+};
+
+const std::vector<Damage>& damages() {
+  static const std::vector<Damage> all = {
+      {"unfiltered", [](RecordSet& s, std::size_t i, float v) { s.unfiltered[i].y = v; }},
+      {"throughput", [](RecordSet& s, std::size_t i, float v) { s.throughput[i].z = v; }},
+      {"position", [](RecordSet& s, std::size_t i, float v) { s.position[i].x = v; }},
+      {"distance", [](RecordSet& s, std::size_t i, float v) { s.distance[i] = v; }},
+      {"contribution", [](RecordSet& s, std::size_t i, float v) { s.contribution[i].x = v; }},
+      {"normal", [](RecordSet& s, std::size_t i, float v) { s.normal[i].y = v; }},
+      {"reflectance", [](RecordSet& s, std::size_t i, float v) { s.reflectance[i].z = v; }},
+      {"hit_distance", [](RecordSet& s, std::size_t i, float v) { s.hit_distance[i] = v; }, false},
+      {"direction", [](RecordSet& s, std::size_t i, float v) { s.direction[i].x = v; }}};
+  return all;
+}
+
+Parameters all_terms() {
+  Parameters parameters;
+  parameters.radius.r0 = 0.3;
+  parameters.weights = {0.5f, 0.2f, false, 0.9f, 0.9f, 0.1f, false};
+  return parameters;
+}
+
+filter::Average run(const RecordSet& set, const Parameters& parameters) {
+  const filter::Block block{0, 1, 1, kCamera};
+  std::vector<float> radius;
+  filter::radii(parameters.radius, set.view(), block, radius);
+  return filter::average(set.view(), radius, block, parameters);
+}
+
+std::size_t count_of(const filter::Statistics& statistics, const std::string& channel) {
+  for (std::size_t k = 0; k < filter::kCheckedChannels; ++k) {
+    if (channel == filter::kCheckedNames[k]) return statistics.non_finite[k];
+  }
+  return 999;
+}
+
+TEST_CASE("A bad value takes its record out and changes no other") {
+  const RecordSet clean = tests::random_records(600, 1, 0, kCamera);
+  std::size_t victim = 100;
+  while (clean.flags[victim] != 3) ++victim;
+  RecordSet without = clean;
+  without.flags[victim] = 0;
+  const filter::Average expected = run(without, all_terms());
+  for (const Damage& damage : damages()) {
+    for (const float bad : {kNan, kInfinity, -kInfinity}) {
+      if (bad == kInfinity && !damage.infinity_is_bad) continue;
+      INFO(damage.channel << " = " << bad);
+      RecordSet set = clean;
+      damage.apply(set, victim, bad);
+      const filter::Average result = run(set, all_terms());
+      CHECK(result.roles[victim] == filter::Role::left_out);
+      CHECK(result.statistics.left_out == 1);
+      CHECK(count_of(result.statistics, damage.channel) == 1);
+      CHECK(result.c_bar == expected.c_bar);
+      CHECK(result.neighbors == expected.neighbors);
+    }
+  }
+}
+
+TEST_CASE("A miss is no bad value") {
+  RecordSet set(10);
+  set.hit_distance.assign(10, kInfinity);
+  const filter::Average result = run(set, all_terms());
+  CHECK(result.statistics.left_out == 0);
+  CHECK(result.neighbors[0] == 10);
+}
+
+TEST_CASE("What nothing uses may be anything") {
+  RecordSet set(10);
+  set.normal[3].x = kNan;
+  set.reflectance[3].x = kNan;
+  set.hit_distance[3] = kNan;
+  set.direction[3].x = kNan;
+  set.distance[3] = kNan;
+  Parameters parameters;
+  parameters.radius.basis = filter::RadiusBasis::world;
+  parameters.weights = filter::WeightTerms::none();
+  CHECK(run(set, parameters).statistics.left_out == 0);
+  // A path without vertex has only its own radiance.
+  set.flags[3] = 0;
+  set.position[3].x = set.contribution[3].x = set.throughput[3].x = kNan;
+  CHECK(run(set, all_terms()).statistics.left_out == 0);
+  set.unfiltered[3].x = kNan;
+  CHECK(run(set, all_terms()).statistics.left_out == 1);
+  // An unshaded one has no contribution.
+  set.unfiltered[4].x = 0;
+  set.flags[4] = filter::kHasVertex;
+  set.contribution[4].x = kNan;
+  CHECK(run(set, all_terms()).statistics.left_out == 1);
+}
+
+TEST_CASE("A quotient that overflows counts for the reflectance") {
+  RecordSet set(10);
+  set.contribution[2] = Rgb(1e10f);
+  set.reflectance[2].y = 1e-35f;
+  Parameters parameters;
+  parameters.demodulate = true;
+  const filter::Average result = run(set, parameters);
+  CHECK(result.statistics.left_out == 1);
+  CHECK(count_of(result.statistics, "reflectance") == 1);
+  CHECK(is_finite(result.c_bar[0]));
+}
+
+TEST_CASE("A record may be bad in several channels and is left out once") {
+  RecordSet set(10);
+  set.position[1].y = kInfinity;
+  set.contribution[1].y = kNan;
+  const filter::Statistics statistics = run(set, {}).statistics;
+  CHECK(statistics.left_out == 1);
+  CHECK(count_of(statistics, "position") == 1);
+  CHECK(count_of(statistics, "contribution") == 1);
+  CHECK(statistics.queries == 9);
+}
+
+TEST_CASE("With every record bad there is nothing, and no failure") {
+  RecordSet set(10);
+  for (Vec3& p : set.position) p.x = kNan;
+  const filter::Average result = run(set, {});
+  CHECK(result.statistics.left_out == 10);
+  CHECK(result.statistics.queries == 0);
+}
+
+}  // namespace
+}  // namespace psf

@@ -1,0 +1,98 @@
+// Metadata comes back whole; what is malformed is named.
+#include "formats/metadata.h"
+
+#include <cmath>
+
+#include "catch.h"
+#include "formats/error.h"
+
+using namespace psf;
+using namespace psf::formats;
+
+namespace {
+
+std::string complaint(const std::string& json) {
+  try {
+    static_cast<void>(parse_metadata(json));
+  } catch (const Error& error) {
+    CHECK(error.code() == ErrorCode::bad_input);
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("metadata survives JSON exactly") {
+  Metadata in;
+  in.producer = "psf-render \"0.1\" \xC3\xA9\n";
+  in.scene = "box.json";
+  in.scene_hash = "00ff";
+  in.integrator = "path";
+  in.sampler = "sobol";
+  in.enumeration = "global";
+  in.seed = 0xFFFFFFFFFFFFFFFFu;
+  in.block_base = 3;
+  in.split = 16;
+  in.vertex_roughness = 0.1 + 0.2;
+  in.vertex_rule = "first diffuse";
+  in.units = "m";
+  in.cameras.resize(2);
+  in.cameras[1] = {"left", 1920, 1080, 1e-3 / 7, {}, {}};
+  for (std::size_t k = 0; k < 16; ++k) {
+    in.cameras[1].camera_to_world[k] = std::sqrt(static_cast<double>(k) + 2);
+    in.cameras[1].projection[k] = -1e-300 * static_cast<double>(k);
+  }
+  in.lights = {"sun", "", "lamp"};
+  const Metadata out = parse_metadata(to_json(in));
+  CHECK(out.producer == in.producer);
+  CHECK(out.scene == in.scene);
+  CHECK(out.scene_hash == in.scene_hash);
+  CHECK(out.integrator == in.integrator);
+  CHECK(out.sampler == in.sampler);
+  CHECK(out.enumeration == in.enumeration);
+  CHECK(out.seed == in.seed);
+  CHECK(out.block_base == in.block_base);
+  CHECK(out.split == in.split);
+  CHECK(out.vertex_roughness == in.vertex_roughness);
+  CHECK(out.vertex_rule == in.vertex_rule);
+  CHECK(out.units == in.units);
+  CHECK(out.cameras == in.cameras);
+  CHECK(out.lights == in.lights);
+}
+
+TEST_CASE("unknown metadata keys are ignored and missing ones keep their defaults") {
+  const Metadata out = parse_metadata(R"({"new":{"deep":[1,2]},"split":4,"cameras":[{"x":1}]})");
+  CHECK(out.split == 4);
+  CHECK(out.block_base == 2);
+  CHECK(out.cameras.size() == 1);
+  CHECK(out.cameras[0].width == 0);
+}
+
+TEST_CASE("malformed metadata is an error that names the key") {
+  CHECK(complaint("") != "");
+  CHECK(complaint("[]") != "");
+  CHECK(complaint("{\"a\":}") != "");
+  CHECK(complaint("{\"producer\":\"\xFF\"}") != "");
+  CHECK(complaint(std::string(100000, '[')) != "");
+  CHECK(complaint("{\"a\":" + std::string(100000, '[') + std::string(100000, ']') + "}") == "");
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {R"({"producer":1})", "/producer"},
+      {R"({"seed":-1})", "/seed"},
+      {R"({"seed":1.5})", "/seed"},
+      {R"({"seed":18446744073709551616})", "/seed"},
+      {R"({"split":4294967296})", "/split"},
+      {R"({"block_base":"2"})", "/block_base"},
+      {R"({"vertex_roughness":null})", "/vertex_roughness"},
+      {R"({"cameras":{}})", "/cameras"},
+      {R"({"cameras":[{},[]]})", "/cameras/1"},
+      {R"({"cameras":[{"width":-3}]})", "/cameras/0/width"},
+      {R"({"cameras":[{"camera_to_world":[1,2]}]})", "/cameras/0/camera_to_world"},
+      {R"({"cameras":[{"projection":[0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,"x"]}]})",
+       "/cameras/0/projection/15"},
+      {R"({"lights":["a",2]})", "/lights/1"}};
+  for (const auto& [json, key] : cases) {
+    CAPTURE(json);
+    CHECK(complaint(json).find(key + ":") != std::string::npos);
+  }
+}

@@ -1,0 +1,407 @@
+// glTF and GLB: geometry through every kind of accessor, nodes, materials, lights, cameras, and
+// what is refused.
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "catch.h"
+#include "load_support.h"
+
+namespace psf::render {
+namespace {
+
+using nlohmann::json;
+
+std::string base64(const std::string& bytes) {
+  static const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += i + k <= bytes.size() ? kDigits[(group >> (18 - 6 * k)) & 63] : '=';
+    }
+  }
+  return text;
+}
+
+std::string decode_base64(const std::string& text) {
+  static const std::string kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  std::uint32_t bits = 0, count = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    bits = bits << 6 | static_cast<std::uint32_t>(kDigits.find(c));
+    count += 6;
+    if (count >= 8) bytes += static_cast<char>(bits >> (count -= 8) & 255);
+  }
+  return bytes;
+}
+
+// A PNG of one texel, 188 188 188.
+const std::string kPng =
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR42mPYs2cPAARsAjVdEe8gAAAAAElFTkSuQmCC";
+
+// A glTF document that grows, with one buffer.
+struct Document {
+  json root = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", {0}}}}}};
+  std::string buffer;
+
+  template <typename T>
+  int accessor(const std::vector<T>& values, int component_type, const char* type,
+               std::size_t components, std::size_t stride = 0) {
+    while (buffer.size() % 4 != 0) buffer += '\0';
+    const std::size_t offset = buffer.size(), element = components * sizeof(T);
+    for (std::size_t i = 0; i < values.size(); i += components) {
+      std::string bytes(std::max(stride, element),
+                        '\x7f');  // what lies between strided elements is no zero
+      std::memcpy(bytes.data(), &values[i], element);
+      buffer += bytes;
+    }
+    json view = {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", buffer.size() - offset}};
+    if (stride != 0) view["byteStride"] = stride;
+    root["bufferViews"].push_back(view);
+    root["accessors"].push_back({{"bufferView", root["bufferViews"].size() - 1},
+                                 {"componentType", component_type},
+                                 {"count", values.size() / components},
+                                 {"type", type}});
+    return static_cast<int>(root["accessors"].size()) - 1;
+  }
+  [[nodiscard]] std::string gltf() const {
+    json whole = root;
+    whole["buffers"] = {{{"byteLength", buffer.size()},
+                         {"uri", "data:application/octet-stream;base64," + base64(buffer)}}};
+    return whole.dump();
+  }
+  [[nodiscard]] std::string glb() const {
+    json whole = root;
+    whole["buffers"] = {{{"byteLength", buffer.size()}}};
+    std::string text = whole.dump(), binary = buffer, file = "glTF";
+    while (text.size() % 4 != 0) text += ' ';
+    while (binary.size() % 4 != 0) binary += '\0';
+    const auto add = [&](std::size_t value) {
+      const auto word = static_cast<std::uint32_t>(value);
+      file.append(reinterpret_cast<const char*>(&word), sizeof word);
+    };
+    add(2);
+    add(12 + 8 + text.size() + 8 + binary.size());
+    add(text.size());
+    file += "JSON" + text;
+    add(binary.size());
+    file += std::string("BIN\0", 4) + binary;
+    return file;
+  }
+};
+
+const std::vector<float> kTriangle = {0, 0, 0, 1, 0, 0, 0, 2, 0};
+
+// One triangle with float positions, strided, and 16-bit indices, in node 0.
+Document triangle() {
+  Document d;
+  const int positions = d.accessor(kTriangle, 5126, "VEC3", 3, 20);
+  const int indices = d.accessor(std::vector<std::uint16_t>{0, 1, 2}, 5123, "SCALAR", 1);
+  d.root["meshes"] = {
+      {{"primitives", {{{"attributes", {{"POSITION", positions}}}, {"indices", indices}}}}}};
+  d.root["nodes"] = {{{"mesh", 0}, {"name", "tri"}}};
+  return d;
+}
+
+Scene load(const Document& d) {
+  const TempFolder folder;
+  return load_scene(folder.write("s.gltf", d.gltf()));
+}
+std::string message_of(const Document& d, ErrorCode code = ErrorCode::bad_input) {
+  const TempFolder folder;
+  const Failure failure = load_failure(folder.write("s.gltf", d.gltf()));
+  CHECK(failure.code == code);
+  CHECK(!contains(failure.message, "\n"));
+  return failure.message;
+}
+
+void check_point(const Vec3& got, const Vec3& expected) {
+  for (int c = 0; c < 3; ++c) CHECK(got[c] == Approx(expected[c]).margin(1e-5));
+}
+
+Vec3 normal_of(const Mesh& mesh) {
+  const auto& [a, b, c] = mesh.triangles.at(0);
+  return cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a])
+      .normalized();
+}
+
+TEST_CASE("the same triangle comes from glTF and GLB, strided and indexed in every type",
+          "[load][gltf]") {
+  const Scene scene = load(triangle());
+  REQUIRE(scene.meshes.size() == 1);
+  CHECK(scene.meshes[0].name == "tri");
+  check_point(scene.meshes[0].positions.at(1), {1, 0, 0});
+  check_point(scene.meshes[0].positions.at(2), {0, 2, 0});
+  check_point(normal_of(scene.meshes[0]), {0, 0, 1});
+
+  const TempFolder folder;
+  CHECK(load_scene(folder.write("s.glb", triangle().glb())).hash == scene.hash);
+
+  Document bytes = triangle(), words = triangle();
+  bytes.root["meshes"][0]["primitives"][0]["indices"] =
+      bytes.accessor(std::vector<std::uint8_t>{0, 1, 2}, 5121, "SCALAR", 1);
+  words.root["meshes"][0]["primitives"][0]["indices"] =
+      words.accessor(std::vector<std::uint32_t>{0, 1, 2}, 5125, "SCALAR", 1);
+  CHECK(load(bytes).hash == scene.hash);
+  CHECK(load(words).hash == scene.hash);
+  Document plain = triangle();
+  plain.root["meshes"][0]["primitives"][0].erase("indices");
+  CHECK(load(plain).hash == scene.hash);
+}
+
+TEST_CASE("buffers and pictures may lie beside the file", "[load][gltf]") {
+  Document d = triangle();
+  d.root["images"] = {{{"uri", "wood%20grain.ppm"}}};
+  d.root["textures"] = {{{"source", 0}}};
+  d.root["materials"] = {
+      {{"name", "oak"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+  d.root["meshes"][0]["primitives"][0]["material"] = 0;
+  json whole = d.root;
+  whole["buffers"] = {{{"byteLength", d.buffer.size()}, {"uri", "data.bin"}}};
+  const TempFolder folder;
+  const std::string path = folder.write("s.gltf", whole.dump());
+  CHECK(load_failure(path).code == ErrorCode::bad_input);
+  folder.write("data.bin", d.buffer);
+  CHECK(load_failure(path).code == ErrorCode::io);
+  CHECK(contains(load_failure(path).message, "s.gltf: /materials/0 (oak): base colour: image 0: "));
+  folder.write("wood grain.ppm", ppm(1, "255 0 0"));
+  const Scene scene = load_scene(path);
+  CHECK(scene.textures.at(0).texel(0, 0) == Rgb(1, 0, 0));
+}
+
+TEST_CASE("pictures come from data URIs and buffer views too, colours and numbers apart",
+          "[load][gltf]") {
+  Document d = triangle();
+  const std::string picture = decode_base64(kPng);
+  d.accessor(std::vector<std::uint8_t>(picture.begin(), picture.end()), 5121, "SCALAR", 1);
+  d.root["images"] = {
+      {{"uri", "data:image/png;base64," + kPng}},
+      {{"bufferView", d.root["bufferViews"].size() - 1}, {"mimeType", "image/png"}}};
+  d.root["textures"] = {{{"source", 0}}, {{"source", 1}}};
+  d.root["materials"] = {
+      {{"pbrMetallicRoughness",
+        {{"baseColorTexture", {{"index", 0}}}, {"metallicRoughnessTexture", {{"index", 1}}}}}}};
+  d.root["meshes"][0]["primitives"][0]["material"] = 0;
+  const Scene scene = load(d);
+  const Material& m = scene.materials.at(0);
+  CHECK(scene.textures.at(static_cast<std::size_t>(m.reflectance_texture)).texel(0, 0).x ==
+        Approx(0.5029).margin(1e-4));
+  CHECK(scene.textures.at(static_cast<std::size_t>(m.roughness_metalness_texture)).texel(0, 0).x ==
+        Approx(188 / 255.0));
+  d.root["bufferViews"].back()["byteLength"] = 1000000;
+  CHECK(contains(message_of(d), "reach outside buffer 0"));
+}
+
+TEST_CASE("emission, metalness and glass survive", "[load][gltf]") {
+  Document d = triangle();
+  d.root["extensionsUsed"] = {"KHR_materials_emissive_strength", "KHR_materials_transmission",
+                              "KHR_materials_ior"};
+  d.root["materials"] = {
+      {{"name", "lamp"},
+       {"emissiveFactor", {1, 0.5, 0.25}},
+       {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}}}}},
+      {{"name", "brass"},
+       {"doubleSided", true},
+       {"pbrMetallicRoughness",
+        {{"baseColorFactor", {0.9, 0.7, 0.3, 1}},
+         {"metallicFactor", 0.75},
+         {"roughnessFactor", 0.2}}}},
+      {{"name", "pane"},
+       {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
+       {"extensions",
+        {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+         {"KHR_materials_ior", {{"ior", 1.33}}}}}}};
+  d.root["meshes"][0]["primitives"][0]["material"] = 0;
+  const Scene scene = load(d);
+  REQUIRE(scene.materials.size() == 3);
+  CHECK(scene.materials[0].emission == Rgb(8, 4, 2));
+  CHECK(!scene.materials[0].two_sided);
+  CHECK(scene.materials[1].kind == MaterialKind::coat);
+  CHECK(scene.materials[1].reflectance == Rgb(0.9f, 0.7f, 0.3f));
+  CHECK(scene.materials[1].metalness == 0.75f);
+  CHECK(scene.materials[1].roughness == 0.2f);
+  CHECK(scene.materials[1].two_sided);
+  CHECK(scene.materials[2].kind == MaterialKind::glass);
+  CHECK(scene.materials[2].ior == Approx(1.33));
+  // The default of glTF for a primitive without material.
+  const Scene plain = load(triangle());
+  CHECK(plain.materials.at(0).metalness == 1);
+  CHECK(plain.materials.at(0).reflectance == Rgb(1));
+}
+
+TEST_CASE("nodes move, turn, scale and mirror what hangs on them", "[load][gltf]") {
+  const float half = std::sqrt(0.5f);
+  Document d = triangle();
+  // Scale by 2, a quarter turn about z (x to y, y to -x), then 10 along x; under a parent that
+  // moves 100 up.
+  d.root["nodes"] = {{{"children", {1}}, {"translation", {0, 100, 0}}},
+                     {{"mesh", 0},
+                      {"scale", {2, 2, 2}},
+                      {"rotation", {0, 0, half, half}},
+                      {"translation", {10, 0, 0}}}};
+  Scene scene = load(d);
+  check_point(scene.meshes.at(0).positions[1], {10, 102, 0});
+  check_point(scene.meshes[0].positions[2], {6, 100, 0});
+  // The same as a matrix, column by column.
+  d.root["nodes"][1] = {{"mesh", 0},
+                        {"matrix", {0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 10, 0, 0, 1}}};
+  scene = load(d);
+  check_point(scene.meshes.at(0).positions[1], {10, 102, 0});
+  check_point(scene.meshes[0].positions[2], {6, 100, 0});
+  check_point(normal_of(scene.meshes[0]), {0, 0, 1});
+  // Mirrored at x = 0: the front stays in front.
+  d.root["nodes"][1] = {{"mesh", 0}, {"scale", {-1, 1, 1}}};
+  scene = load(d);
+  check_point(scene.meshes.at(0).positions[1], {-1, 100, 0});
+  check_point(normal_of(scene.meshes[0]), {0, 0, 1});
+  d.root["nodes"][1]["children"] = {0};
+  CHECK(contains(message_of(d), "or a circle"));
+}
+
+TEST_CASE("cameras and lights of the file arrive where their nodes put them", "[load][gltf]") {
+  const float half = std::sqrt(0.5f);
+  Document d = triangle();
+  d.root["extensionsUsed"] = {"KHR_lights_punctual"};
+  d.root["extensions"] = {
+      {"KHR_lights_punctual",
+       {{"lights",
+         {{{"type", "point"}, {"name", "bulb"}, {"color", {1, 0.5, 0.25}}, {"intensity", 40}},
+          {{"type", "directional"}, {"intensity", 3}},
+          {{"type", "spot"},
+           {"intensity", 2},
+           {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.5}}}}}}}}};
+  d.root["cameras"] = {{{"type", "perspective"},
+                        {"perspective", {{"yfov", 1.0}, {"aspectRatio", 2.0}, {"znear", 0.1}}}}};
+  d.root["scenes"][0]["nodes"] = {0, 1, 2, 3, 4};
+  const auto light = [](int index) { return json{{"KHR_lights_punctual", {{"light", index}}}}; };
+  d.root["nodes"] = {{{"mesh", 0}},
+                     {{"camera", 0}, {"name", "eye"}, {"translation", {0, 0, 9}}},
+                     {{"extensions", light(0)}, {"translation", {1, 2, 3}}},
+                     // A quarter turn about x takes y to z, so -z to y.
+                     {{"extensions", light(1)}, {"rotation", {half, 0, 0, half}}},
+                     {{"extensions", light(2)}}};
+  const Scene scene = load(d);
+  REQUIRE(scene.cameras.size() == 1);
+  const Camera& camera = scene.cameras[0];
+  check_point(camera.eye, {0, 0, 9});
+  check_point((camera.target - camera.eye).normalized(), {0, 0, -1});
+  CHECK(camera.fov == Approx(2 * std::atan(2 * std::tan(0.5))));
+  CHECK((camera.width == 512 && camera.height == 256));
+  REQUIRE(scene.lights.size() == 3);
+  CHECK(scene.lights[0].kind == LightKind::point);
+  CHECK(scene.lights[0].name == "bulb");
+  CHECK(scene.lights[0].intensity == Rgb(40, 20, 10));
+  check_point(scene.lights[0].position, {1, 2, 3});
+  CHECK(scene.lights[1].kind == LightKind::directional);
+  check_point(scene.lights[1].direction, {0, 1, 0});
+  CHECK(scene.lights[2].kind == LightKind::spot);
+  CHECK(scene.lights[2].cos_inner == Approx(std::cos(0.1)));
+  CHECK(scene.lights[2].cos_outer == Approx(std::cos(0.5)));
+}
+
+TEST_CASE("strips, fans, sparse accessors, normalised coordinates and texture transforms",
+          "[load][gltf]") {
+  Document d = triangle();
+  const int square =
+      d.accessor(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, 5126, "VEC3", 3);
+  const int uvs =
+      d.accessor(std::vector<std::uint8_t>{0, 0, 255, 0, 0, 255, 255, 255}, 5121, "VEC2", 2);
+  d.root["accessors"][static_cast<std::size_t>(uvs)]["normalized"] = true;
+  auto& primitive = d.root["meshes"][0]["primitives"][0];
+  primitive = {{"attributes", {{"POSITION", square}, {"TEXCOORD_0", uvs}}}, {"mode", 5}};
+  Scene scene = load(d);
+  REQUIRE(scene.meshes.at(0).triangles.size() == 2);
+  for (const auto& [a, b, c] : scene.meshes[0].triangles) {
+    const auto& p = scene.meshes[0].positions;
+    check_point(cross(p[b] - p[a], p[c] - p[a]), {0, 0, 1});
+  }
+  // glTF's v goes down, ours up.
+  CHECK(scene.meshes[0].uvs[0] == Vec2(0, 1));
+  CHECK(scene.meshes[0].uvs[3] == Vec2(1, 0));
+
+  const int where = d.accessor(std::vector<std::uint16_t>{2}, 5123, "SCALAR", 1);
+  const int what = d.accessor(std::vector<float>{7, 8, 9}, 5126, "VEC3", 3);
+  const auto view_of = [&](int accessor) {
+    return d.root["accessors"][static_cast<std::size_t>(accessor)]["bufferView"];
+  };
+  d.root["accessors"][static_cast<std::size_t>(square)]["sparse"] = {
+      {"count", 1},
+      {"indices", {{"bufferView", view_of(where)}, {"byteOffset", 0}, {"componentType", 5123}}},
+      {"values", {{"bufferView", view_of(what)}, {"byteOffset", 0}}}};
+  scene = load(d);
+  check_point(scene.meshes.at(0).positions[1], {1, 0, 0});
+  check_point(scene.meshes[0].positions[2], {7, 8, 9});
+
+  d.root["images"] = {{{"uri", "data:image/png;base64," + kPng}}};
+  d.root["textures"] = {{{"source", 0}}};
+  d.root["materials"] = {
+      {{"pbrMetallicRoughness",
+        {{"baseColorTexture",
+          {{"index", 0},
+           {"extensions",
+            {{"KHR_texture_transform", {{"scale", {2, 4}}, {"offset", {0.5, 0.25}}}}}}}}}}}};
+  primitive["material"] = 0;
+  scene = load(d);
+  CHECK(scene.meshes.at(0).uvs[0] == Vec2(0.5f, 0.75f));
+  CHECK(scene.meshes[0].uvs[3] == Vec2(2.5f, -3.25f));
+}
+
+TEST_CASE("an error of a glTF file names the place in it", "[load][gltf]") {
+  Document d = triangle();
+  d.root["accessors"][0]["count"] = 1000;
+  CHECK(message_of(d) ==
+        "s.gltf: /meshes/0/primitives/0/attributes/POSITION: 1000 elements do not fit into the 60 "
+        "bytes of bufferView 0");
+  d = triangle();
+  d.root["accessors"][0]["count"] = 4000000000u;
+  d.root["accessors"][0].erase("bufferView");
+  CHECK(contains(message_of(d, ErrorCode::limit), "elements are more than psf takes"));
+  d = triangle();
+  d.root["meshes"][0]["primitives"][0]["indices"] =
+      d.accessor(std::vector<std::uint32_t>{0, 1, 3}, 5125, "SCALAR", 1);
+  CHECK(message_of(d) == "s.gltf: mesh tri: triangle 0 names vertex 3, there are 3");
+  d = triangle();
+  d.root["meshes"][0]["primitives"][0]["attributes"]["POSITION"] =
+      d.accessor(std::vector<float>{0, 0, 0, 1, std::nanf(""), 0, 0, 1, 0}, 5126, "VEC3", 3);
+  CHECK(message_of(d) == "s.gltf: mesh tri: vertex 1 is not finite");
+  d = triangle();
+  d.root["nodes"][0]["mesh"] = 5;
+  CHECK(message_of(d) == "s.gltf: /nodes/0: there is no mesh 5");
+  d = triangle();
+  d.root["nodes"][0]["scale"] = {1, 0, 1};
+  CHECK(contains(message_of(d), "/meshes/0/primitives/0: the transform flattens the shape"));
+  d = triangle();
+  d.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+  CHECK(
+      message_of(d) ==
+      "s.gltf: /extensionsRequired: the file needs KHR_draco_mesh_compression, which psf does not "
+      "have; export it without");
+  d = triangle();
+  d.root["materials"] = {
+      {{"name", "bright"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1.5, 1, 1}}}}}};
+  CHECK(message_of(d) ==
+        "s.gltf: material bright: the reflectance is 1.5, expected a number in [0, 1]");
+}
+
+TEST_CASE("damaged glTF and GLB files are errors, cut anywhere", "[load][gltf]") {
+  const TempFolder folder;
+  CHECK(contains(load_failure(folder.write("s.gltf", "{\n \"asset\": ,")).message,
+                 "s.gltf:2:11: malformed JSON"));
+  CHECK(load_failure(folder.write("s.gltf", "")).code == ErrorCode::bad_input);
+  for (const bool binary : {false, true}) {
+    const std::string whole = binary ? triangle().glb() : triangle().gltf();
+    const std::string name = binary ? "s.glb" : "s.gltf";
+    for (std::size_t length = 0; length < whole.size(); length += 5) {
+      CHECK(load_failure(folder.write(name, whole.substr(0, length))).code == ErrorCode::bad_input);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace psf::render

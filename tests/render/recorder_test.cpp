@@ -1,0 +1,92 @@
+// The recorder's columns and sums against the records put in.
+#include "render/recorder.h"
+
+#include <cstring>
+#include <limits>
+
+#include "catch.h"
+#include "formats/error.h"
+
+using namespace psf;
+using namespace psf::render;
+
+namespace {
+
+std::vector<std::string> names(const std::vector<formats::Channel>& channels) {
+  std::vector<std::string> result;
+  for (const auto& channel : channels) result.push_back(channel.name);
+  return result;
+}
+
+// Component k of record i of a float channel.
+float value(const Recorder& recorder, const std::string& channel, std::size_t i, std::size_t k) {
+  const auto channels = record_channels();
+  const auto columns = recorder.columns(channels);
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (channels[c].name != channel) continue;
+    float result;
+    std::memcpy(&result, static_cast<const char*>(columns[c]) + i * channels[c].stride() + 4 * k,
+                4);
+    return result;
+  }
+  return std::numeric_limits<float>::quiet_NaN();
+}
+
+}  // namespace
+
+TEST_CASE("all channels, or the ones asked for beside those that every file has") {
+  CHECK(record_channels().size() == 15);
+  std::size_t bytes = 0;
+  for (const auto& channel : record_channels()) bytes += channel.stride();
+  CHECK(bytes == 111);
+  const std::vector<std::string> wanted{"roughness", "normal"};
+  CHECK(names(record_channels(wanted)) ==
+        std::vector<std::string>{"position", "normal", "throughput", "contribution", "unfiltered",
+                                 "distance", "pixel", "flags", "roughness"});
+  const std::vector<std::string> unknown{"normals"};
+  CHECK_THROWS_AS(record_channels(unknown), Error);
+}
+
+TEST_CASE("columns hold what was set, non-finite values included") {
+  Recorder recorder(4);
+  PathRecord record;
+  record.position = Vec3(1, 2, 3);
+  record.normal = Vec3(4, 5, 6);
+  record.reflectance = Rgb(7, 8, 9);
+  record.throughput = Rgb(10, 11, 12);
+  record.contribution = Rgb(13, 14, 15);
+  record.unfiltered = Rgb(16, 17, 18);
+  record.direction = Vec3(19, 20, 21);
+  record.distance = 22;
+  record.hit_distance = std::numeric_limits<float>::infinity();
+  record.roughness = 0.5f;
+  recorder.set(2, 0, 0, record);
+  float expected = 1;
+  for (const char* channel : {"position", "normal", "reflectance", "throughput", "contribution",
+                              "unfiltered", "direction"}) {
+    for (std::size_t k = 0; k < 3; ++k) CHECK(value(recorder, channel, 2, k) == expected++);
+  }
+  CHECK(value(recorder, "distance", 2, 0) == 22);
+  CHECK(value(recorder, "hit_distance", 2, 0) == std::numeric_limits<float>::infinity());
+  CHECK(value(recorder, "roughness", 2, 0) == 0.5f);
+}
+
+TEST_CASE("the picture gets u + alpha c, c only where there is a vertex, and no not-a-number") {
+  Recorder recorder(4);
+  PathRecord record;
+  record.has_vertex = record.shaded = true;
+  record.unfiltered = Rgb(1, 0, 0);
+  record.throughput = Rgb(0.5f, 1, 1);
+  record.contribution = Rgb(2, 3, 4);
+  recorder.set(0, 0, 1, record);
+  record.has_vertex = false;
+  recorder.set(1, 0, 2, record);
+  record.unfiltered.y = std::numeric_limits<float>::quiet_NaN();
+  recorder.set(2, 0, 1, record);
+  film::Film film(3, 1);
+  CHECK(recorder.add_to(film, 3, 1) == 1);
+  CHECK(film.mean() == std::vector<float>{0, 0, 0, 2, 3, 4, 1, 0, 0});
+  film::Film compensated(3, 1);
+  CHECK(recorder.add_to(compensated, 2, 4) == 0);
+  CHECK(compensated.mean() == std::vector<float>{0, 0, 0, 5, 12, 16, 1, 0, 0});
+}

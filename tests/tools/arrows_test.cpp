@@ -1,0 +1,63 @@
+// The arrows between the folders are those of src/README.md, and psf does not link Embree.
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+
+#include "catch.h"
+#include "command.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path kRoot = PSF_SOURCE_DIR;
+
+// Which folders the files of a folder may include; itself always.
+const std::map<std::string, std::set<std::string>> kAllowed = {
+    {"formats", {}},
+    {"core", {"formats/error.h"}},
+    {"search", {"core"}},
+    {"film", {"core"}},
+    {"filter", {"core", "search"}},
+    {"study", {"core", "filter", "film", "formats"}},
+    {"render", {"core", "film", "formats"}},
+};
+
+fs::path path_of(const std::string& folder) { return folder == "formats" ? kRoot / folder : kRoot / "src" / folder; }
+
+}  // namespace
+
+TEST_CASE("every include of a folder follows the arrows") {
+  const std::regex include("^\\s*#include\\s+\"(([a-z]+)/[^\"]+)\"");
+  for (const auto& [folder, allowed] : kAllowed) {
+    std::size_t files = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(path_of(folder))) {
+      if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+      ++files;
+      std::ifstream in(entry.path());
+      for (std::string line; std::getline(in, line);) {
+        std::smatch match;
+        if (!std::regex_search(line, match, include)) continue;
+        const std::string target = match[2];
+        const bool fine = target == folder || allowed.contains(target) || allowed.contains(match[1]);
+        INFO(entry.path().string() << ": " << line);
+        CHECK(fine);
+      }
+    }
+    CHECK(files > 0);
+  }
+}
+
+TEST_CASE("every folder of the source has its arrows here") {
+  for (const auto& entry : fs::directory_iterator(kRoot / "src")) {
+    if (entry.is_directory()) CHECK(kAllowed.contains(entry.path().filename().string()));
+  }
+}
+
+TEST_CASE("psf does not link Embree, psf-render does") {
+  CHECK(psf::tests::run("ldd " PSF_BINARY_DIR "/psf").out.find("embree") == std::string::npos);
+  CHECK(psf::tests::run("ldd " PSF_BINARY_DIR "/psf-render").out.find("embree") != std::string::npos);
+}

@@ -1,0 +1,114 @@
+// Options whose text is a value of ours: numbers within limits, choices; and help that fits the
+// page.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace psf::tools {
+
+// The whole of `text` as a finite number, or nothing.
+template <class T>
+std::optional<T> parse_number(std::string_view text) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if constexpr (std::is_floating_point_v<T>) {
+    if (!std::isfinite(value)) return std::nullopt;
+  }
+  return value;
+}
+
+// An option whose text `parse` turns into a value, or into nothing where it is none.
+template <class Parse>
+CLI::Option* add_parsed(CLI::App& app, const std::string& name, const std::string& type,
+                        const std::string& expected, const std::string& help, Parse parse) {
+  const auto callback = [=](const std::string& text) {
+    if (parse(text)) return;
+    throw CLI::ValidationError(name, fmt::format("expected {}, got \"{}\"", expected, text));
+  };
+  return app.add_option_function<std::string>(name, callback, help)->type_name(type);
+}
+
+// A number between two limits, both allowed.
+template <class T>
+CLI::Option* add_number(CLI::App& app, const std::string& name, T& target, T least, T most,
+                        const std::string& help) {
+  const bool bounded = most < std::numeric_limits<T>::max();
+  const std::string expected = fmt::format(
+      "{} {}", std::is_integral_v<T> ? "a whole number" : "a number",
+      bounded ? fmt::format("from {} to {}", least, most) : fmt::format("of at least {}", least));
+  auto* option =
+      add_parsed(app, name, "N", expected, help, [&target, least, most](const std::string& text) {
+        const auto number = parse_number<T>(text);
+        if (!number || *number < least || *number > most) return false;
+        target = *number;
+        return true;
+      });
+  if (std::isfinite(static_cast<double>(target))) {
+    option->default_str(fmt::format("{}", target));
+  }
+  return option;
+}
+
+template <class Enum>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Enum& target,
+                        const std::vector<std::pair<std::string, Enum>>& choices,
+                        const std::string& help) {
+  std::string names;
+  std::string chosen;
+  for (const auto& [choice, value] : choices) {
+    names += (names.empty() ? "" : "|") + choice;
+    if (value == target) chosen = choice;
+  }
+  return add_parsed(app, name, names, "one of " + names, help,
+                    [&target, choices](const std::string& text) {
+                      const auto found =
+                          std::find_if(choices.begin(), choices.end(),
+                                       [&](const auto& choice) { return choice.first == text; });
+                      if (found == choices.end()) return false;
+                      target = found->second;
+                      return true;
+                    })
+      ->default_str(chosen);
+}
+
+// Breaks a help text into lines that fit a page beside the options' names.
+inline std::string wrap(const std::string& text) {
+  constexpr std::size_t kWidth = 68;
+  std::string result;
+  std::size_t line = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    if (line + end - begin > kWidth && line > 0) {
+      result += '\n';
+      line = 0;
+    } else if (line > 0) {
+      result += ' ';
+      ++line;
+    }
+    result += text.substr(begin, end - begin);
+    line += end - begin;
+    begin = end + 1;
+  }
+  return result;
+}
+
+inline void wrap_descriptions(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    option->description(wrap(option->get_description()));
+  }
+}
+
+}  // namespace psf::tools

@@ -1,0 +1,156 @@
+// What psf filter says of a run: for people on stdout, for programs as JSON.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "filter/parameters_text.h"
+#include "study/filter_dump.h"
+
+namespace psf::tools {
+
+struct FilterReport {
+  std::string input, uuid;
+  filter::Parameters parameters;
+  study::FilterOutcome outcome;
+  std::size_t cameras = 1;
+  std::vector<std::string> written;  // files
+  double seconds_write = 0, seconds = 0;
+};
+
+// 1234567 -> "1,234,567"
+inline std::string with_commas(std::uint64_t value) {
+  std::string text = std::to_string(value);
+  for (std::size_t left = text.size(); left > 3;) {
+    left -= 3;
+    text.insert(left, ",");
+  }
+  return text;
+}
+
+inline std::string counted(std::uint64_t count, const char* one, const char* many) {
+  return with_commas(count) + " " + (count == 1 ? one : many);
+}
+
+// "a 1, b 2" of those that are not 0, or `otherwise`.
+template <typename Names, typename Counts, typename Format>
+std::string listed(const Names& names, const Counts& counts, const char* otherwise, Format format) {
+  std::string text;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (counts[k] == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", names[k], format(counts[k]));
+  }
+  return text.empty() ? otherwise : text;
+}
+
+inline std::string weights_text(const filter::Parameters& parameters) {
+  std::string text;
+  for (const auto& [name, value] : filter::describe(parameters)) {
+    const auto& terms = filter::kTermNames;
+    if (std::find(terms.begin(), terms.end(), name) == terms.end() || value == "off") continue;
+    text += (text.empty() ? "" : ", ") + name + (value == "on" ? "" : " " + value);
+  }
+  return text.empty() ? "none" : text;
+}
+
+inline void print_report(const FilterReport& report) {
+  const filter::Statistics& s = report.outcome.statistics;
+  const filter::Parameters& p = report.parameters;
+  const auto line = [](const char* name, const std::string& text) {
+    fmt::print("{:<10} {}\n", name, text);
+  };
+  const auto mean = [&s](std::uint64_t sum) {
+    return s.queries == 0 ? 0.0 : static_cast<double>(sum) / static_cast<double>(s.queries);
+  };
+  fmt::print("{}\n", report.input);
+  line("records", fmt::format("{} in {} and {}, {}", with_commas(s.records),
+                              counted(report.outcome.passes, "pass", "passes"),
+                              counted(report.outcome.blocks, "block", "blocks"),
+                              counted(report.cameras, "camera", "cameras")));
+  line("averaged",
+       fmt::format("{} from {}; {} without vertex", with_commas(s.queries),
+                   counted(s.sources, "source", "sources"), with_commas(s.without_vertex)));
+  line("radius", fmt::format("{}, delta {:.4g}, block {}", filter::to_text(p.radius),
+                             p.radius.delta, filter::to_text(p.block)));
+  line("weights", weights_text(p));
+  line("neighbors",
+       fmt::format("mean {:.1f}, min {}, max {}; {:.1f} in the ball", s.mean_neighbors(),
+                   s.queries == 0 ? "0" : with_commas(s.min_neighbors),
+                   with_commas(s.max_neighbors), mean(s.candidates)));
+  if (p.count_refusals) {
+    const auto share = [&s](std::uint64_t refused) {
+      return fmt::format("{:.1f}%",
+                         100 * static_cast<double>(refused) / static_cast<double>(s.candidates));
+    };
+    line("refused", listed(filter::kTermNames, s.refused, "none", share));
+  }
+  line("orphans", s.orphans == 0
+                      ? "none"
+                      : fmt::format("{}, {} of them matched by no source", with_commas(s.orphans),
+                                    with_commas(s.orphans_unmatched)));
+  const std::uint64_t left_out = s.left_out + s.without_source + report.outcome.overflows;
+  if (left_out == 0) {
+    line("left out", "none");
+  } else {
+    line("left out",
+         fmt::format("{}: {} not finite ({}), {} in a block without source, {} overflowed",
+                     with_commas(left_out), with_commas(s.left_out),
+                     listed(filter::kCheckedNames, s.non_finite, "none", with_commas),
+                     with_commas(s.without_source), with_commas(report.outcome.overflows)));
+  }
+  line("time",
+       fmt::format(
+           "{:.2f} s: read {:.2f}, index {:.2f}, filter {:.2f}, pictures {:.2f}, write {:.2f}",
+           report.seconds, report.outcome.seconds_read, s.seconds_index, s.seconds_filter,
+           report.outcome.seconds_film, report.seconds_write));
+  line("wrote", fmt::format("{}", fmt::join(report.written, ", ")));
+}
+
+inline nlohmann::ordered_json to_json(const FilterReport& report) {
+  using Json = nlohmann::ordered_json;
+  const filter::Statistics& s = report.outcome.statistics;
+  Json parameters, refused, non_finite;
+  for (const auto& [name, value] : filter::describe(report.parameters)) parameters[name] = value;
+  for (std::size_t k = 0; k < filter::kTermCount; ++k)
+    refused[filter::kTermNames[k]] = s.refused[k];
+  for (std::size_t k = 0; k < filter::kCheckedChannels; ++k) {
+    non_finite[filter::kCheckedNames[k]] = s.non_finite[k];
+  }
+  Json json = {{"input", report.input},
+               {"uuid", report.uuid},
+               {"parameters", parameters},
+               {"records", s.records},
+               {"passes", report.outcome.passes},
+               {"blocks", report.outcome.blocks},
+               {"cameras", report.cameras},
+               {"without_vertex", s.without_vertex},
+               {"queries", s.queries},
+               {"sources", s.sources},
+               {"candidates", s.candidates},
+               {"neighbors",
+                {{"mean", s.mean_neighbors()},
+                 {"min", s.queries == 0 ? 0 : s.min_neighbors},
+                 {"max", s.max_neighbors},
+                 {"total", s.accepted}}},
+               {"orphans", s.orphans},
+               {"orphans_unmatched", s.orphans_unmatched},
+               {"left_out", s.left_out},
+               {"non_finite", non_finite},
+               {"without_source", s.without_source},
+               {"overflows", report.outcome.overflows},
+               {"seconds",
+                {{"total", report.seconds},
+                 {"read", report.outcome.seconds_read},
+                 {"index", s.seconds_index},
+                 {"filter", s.seconds_filter},
+                 {"pictures", report.outcome.seconds_film},
+                 {"write", report.seconds_write}}},
+               {"files", report.written}};
+  json["refused"] = report.parameters.count_refusals ? refused : Json(nullptr);
+  return json;
+}
+
+}  // namespace psf::tools

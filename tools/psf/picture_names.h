@@ -1,0 +1,62 @@
+// The files that a run writes its pictures to: one a name, camera and snapshot.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "film/image.h"
+#include "formats/metadata.h"
+
+namespace psf::tools {
+
+// Where pictures go: the names given, with the camera's where there are several, and the passes of
+// a snapshot.
+class PictureNames {
+ public:
+  PictureNames(const std::vector<std::string>& names,
+               const std::vector<formats::CameraInfo>& cameras)
+      : names_(names) {
+    std::set<std::string> taken;
+    for (const formats::CameraInfo& camera : cameras) {
+      std::string name = camera.name.empty() ? "camera" : camera.name;
+      std::replace_if(
+          name.begin(), name.end(),
+          [](unsigned char c) { return c < 0x80 && std::isalnum(c) == 0 && c != '-'; }, '_');
+      const std::string stem = name;
+      for (int k = 2; !taken.insert(name).second; ++k) name = stem + std::to_string(k);
+      cameras_.push_back(cameras.size() > 1 ? "." + name : "");
+    }
+  }
+
+  // `passes` 0: the final pictures.
+  [[nodiscard]] std::string path(std::size_t output, std::size_t camera,
+                                 std::uint64_t passes) const {
+    const std::filesystem::path name(names_[output]);
+    const std::string suffix = passes == 0 ? "" : fmt::format(".{:04}", passes);
+    return (name.parent_path() /
+            (name.stem().string() + cameras_[camera] + suffix + name.extension().string()))
+        .string();
+  }
+  void check(const std::vector<std::uint64_t>& snapshots) const {
+    for (std::size_t output = 0; output < names_.size(); ++output) {
+      for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
+        film::check_image_path(path(output, camera, 0));
+        for (const std::uint64_t passes : snapshots)
+          film::check_image_path(path(output, camera, passes));
+      }
+    }
+  }
+  [[nodiscard]] std::size_t count() const { return names_.size(); }
+
+ private:
+  std::vector<std::string> names_, cameras_;
+};
+
+}  // namespace psf::tools
