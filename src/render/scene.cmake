@@ -8,5 +8,4 @@ target_sources(psf_render PRIVATE
   gltf_accessor.cpp gltf_material.cpp gltf_node.cpp json_cursor.cpp json_material.cpp json_shape.cpp json_transform.cpp load.cpp load_gltf.cpp load_hash.cpp
   load_json.cpp load_obj.cpp load_obj_check.cpp load_overrides.cpp load_validate.cpp shapes.cpp texture.cpp)
 target_link_libraries(psf_render
-  PUBLIC nlohmann_json::nlohmann_json
-  PRIVATE fmt::fmt OpenImageIO::OpenImageIO TinyGLTF::TinyGLTF tinyobjloader::tinyobjloader)
+  PRIVATE fmt::fmt nlohmann_json::nlohmann_json OpenImageIO::OpenImageIO TinyGLTF::TinyGLTF tinyobjloader::tinyobjloader)

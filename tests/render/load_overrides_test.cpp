@@ -10,7 +10,8 @@ namespace psf::render {
 namespace {
 
 const std::string kTwoCameras = R"({
-  "cameras": [{"name": "a", "eye": [0, 0, 5], "target": [0, 0, 0]}, {"name": "b", "eye": [5, 0, 0], "target": [0, 0, 0]}],
+  "cameras": [{"name": "a", "eye": [0, 0, 5], "target": [0, 0, 0]}, {"name": "b",
+      "eye": [5, 0, 0], "target": [0, 0, 0]}],
   "materials": [{"name": "m", "emission": 1}],
   "shapes": [{"shape": "box", "material": "m", "min": [-1, -1, -1], "max": [1, 1, 1]}]})";
 

@@ -62,6 +62,13 @@ inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+// A JSON scene of the materials "white" and "lamp" and of these shapes.
+inline std::string with_shapes(const std::string& shapes) {
+  return R"({"materials": [{"name": "white"}, {"name": "lamp", "emission": [1, 2, 3]}],
+      "shapes": [)" +
+         shapes + "]}";
+}
+
 // A picture of one row in a plain text format: "r g b r g b ...".
 inline std::string ppm(int width, const std::string& values) {
   return "P3\n" + std::to_string(width) + " 1\n255\n" + values + "\n";

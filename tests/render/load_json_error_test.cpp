@@ -1,0 +1,116 @@
+// The JSON scene file: where each error says it is.
+#include "catch.h"
+#include "load_support.h"
+
+namespace psf::render {
+namespace {
+
+std::string message_of(const std::string& text, ErrorCode code = ErrorCode::bad_input) {
+  const TempFolder folder;
+  const Failure failure = load_failure(folder.write("s.json", text));
+  CHECK(failure.code == code);
+  CHECK(!contains(failure.message, "\n"));
+  return failure.message;
+}
+
+TEST_CASE("an error of the JSON scene names file and JSON path", "[load][json]") {
+  CHECK(
+      message_of(
+          R"({"materials": [{"name": "a"}, {"name": "b"}, {"name": "c",
+              "roughness": "shiny"}]})") ==
+      "s.json: /materials/2/roughness: expected a number in [0, 1], got \"shiny\"");
+  CHECK(message_of(R"({"materials": [{"name": "a", "rougness": 0.5}]})") ==
+        "s.json: /materials/0: unknown key \"rougness\"; did you mean \"roughness\"?");
+  CHECK(message_of(R"({"camera": []})") ==
+        "s.json: /: unknown key \"camera\"; did you mean \"cameras\"?");
+  CHECK(message_of(R"({"materials": [{"name": "a", "qqqqqqqq": 1}]})") ==
+        "s.json: /materials/0: unknown key \"qqqqqqqq\"");
+  CHECK(message_of(R"({"materials": [{"name": "a", "reflectance": [0.5, 1.5, 0.5]}]})") ==
+        "s.json: /materials/0/reflectance/1: expected a number in [0, 1], got 1.5");
+  CHECK(message_of(R"({"materials": [{"name": "a", "kind": "velvet"}]})") ==
+        "s.json: /materials/0/kind: expected one of diffuse, mirror, glass, conductor, coat, got "
+        "\"velvet\"");
+  CHECK(message_of(R"({"materials": [{"name": "a"}, {"name": "a"}]})") ==
+        "s.json: /materials/1/name: another material is called \"a\"");
+  CHECK(message_of(R"({"materials": [{"kind": "glass"}]})") ==
+        "s.json: /materials/0: the key \"name\" is missing");
+  CHECK(message_of(with_shapes(
+            R"({"shape": "sphere", "material": "whit", "center": [0,0,0], "radius": 1})")) ==
+        "s.json: /shapes/0/material: no material is called \"whit\"; did you mean \"white\"?");
+  CHECK(message_of(with_shapes(
+            R"({"shape": "sphere", "material": "white", "center": [0,0], "radius": 1})")) ==
+        "s.json: /shapes/0/center: expected an array of 3 numbers, got [0,0]");
+  CHECK(message_of(with_shapes(
+            R"({"shape": "sphere", "material": "white", "center": [0,0,0], "radius": 0})")) ==
+        "s.json: /shapes/0/radius: expected a number > 0, got 0");
+  CHECK(message_of(
+            with_shapes(R"({"shape": "sphere", "material": "white", "center": [0,0,0], "radius": 1,
+                                   "transform": {"scale": [1, 2, 1]}})")) ==
+        "s.json: /shapes/0: a sphere can be moved, turned and scaled evenly only; use a lathe for "
+        "an ellipsoid");
+  CHECK(
+      message_of(with_shapes(R"({"shape": "group", "shapes": [{"shape": "box", "material": "white",
+                                   "min": [0,0,0], "max": [1,0,1]}]})")) ==
+      "s.json: /shapes/0/shapes/0: \"min\" is not below \"max\" in each of x, y and z");
+  CHECK(message_of(with_shapes(
+            R"({"shape": "mesh", "material": "white", "positions": [[0,0,0],[1,0,0],[0,1,0]],
+                                   "triangles": [[0, 1, 3]]})")) ==
+        "s.json: /shapes/0/triangles/0/2: expected a whole number from 0 to 2, got 3");
+  CHECK(message_of(
+            with_shapes(R"({"shape": "quad", "material": "white", "origin": [0,0,0], "u": [1,0,0],
+                                   "v": [0,1,0], "transform": [{"rotate": 5, "axis": "w"}]})")) ==
+        "s.json: /shapes/0/transform/0/axis: expected one of x, y, z, got \"w\"");
+  CHECK(message_of(R"({"cameras": [{"eye": [0,0,1], "target": [0,0,0], "fov": 180}]})") ==
+        "s.json: /cameras/0/fov: expected a number of degrees in (0, 180), got 180");
+  CHECK(message_of(R"({"cameras": [{"eye": [0,0,1], "target": [0,0,0], "size": [0, 10]}]})") ==
+        "s.json: /cameras/0/size/0: expected a whole number from 1 to 65536, got 0");
+  CHECK(message_of(R"({"lights": [{"kind": "point", "position": [0,0,0], "intensity": -1}]})") ==
+        "s.json: /lights/0/intensity: expected a number >= 0, got -1");
+  CHECK(message_of("[1, 2]") == "s.json: /: expected an object, got [1,2]");
+}
+
+TEST_CASE("malformed JSON is named with line and column", "[load][json]") {
+  CHECK(contains(message_of("{\n  \"materials\": [\n    }\n"), "s.json:3:5: malformed JSON: "));
+  CHECK(contains(message_of("{\"a\": 1"), "s.json:1:8: malformed JSON: "));
+  CHECK(contains(message_of(""), "s.json:1:1: malformed JSON: "));
+  CHECK(contains(message_of("{\"a\": 1e999}"), "malformed JSON: number overflow"));
+  CHECK(message_of(R"({"materials": [{"name": "a", "name": "b"}]})") ==
+        "s.json: the key \"name\" is twice in one object");
+}
+
+TEST_CASE("a texture that is not there names the material that wants it", "[load][json]") {
+  const std::string message = message_of(
+      R"({"materials": [{"name": "oak", "reflectance_map": "wood.png"}]})", ErrorCode::io);
+  CHECK(message ==
+        "s.json: /materials/0/reflectance_map: material \"oak\": wood.png: no such picture");
+  CHECK(message_of(R"({"environment": {"map": "sky.exr"}})", ErrorCode::io) ==
+        "s.json: /environment/map: sky.exr: no such picture");
+  CHECK(message_of(with_shapes(R"({"shape": "mesh", "file": "bunny.obj"})"), ErrorCode::io) ==
+        "s.json: /shapes/0/file: bunny.obj: cannot open: No such file or directory");
+  CHECK(message_of(with_shapes(R"({"shape": "mesh", "file": "bunny.ply"})")) ==
+        "s.json: /shapes/0/file: bunny.ply: not a kind of mesh file that psf reads (.obj, .gltf, "
+        ".glb)");
+}
+
+TEST_CASE("more copies than memory are a limit, told before any is made", "[load][json]") {
+  const std::string grid = R"("repeat": [{"count": 4000, "step": {"translate": [1,0,0]}},
+                                         {"count": 4000, "step": {"translate": [0,1,0]}}])";
+  CHECK(contains(
+      message_of(
+          with_shapes(
+              R"({"shape": "sphere", "material": "white", "center": [0,0,0], "radius": 1, )" +
+              grid + "}"),
+          ErrorCode::limit),
+      "s.json: /shapes/0/repeat/1/count: 4000 copies of 4000 are more than psf takes"));
+  CHECK(contains(
+      message_of(
+          with_shapes(R"({"shape": "cylinder", "material": "white", "from": [0,0,0], "to": [0,1,0],
+                                            "radius": 1, "segments": 65536,
+                                                "repeat": {"count": 4000000,
+                                            "step": {"translate": [1,0,0]}}})"),
+          ErrorCode::limit),
+      "are more than psf takes"));
+}
+
+}  // namespace
+}  // namespace psf::render
