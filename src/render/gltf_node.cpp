@@ -34,12 +34,11 @@ std::vector<std::array<std::uint32_t, 3>> to_triangles(const std::vector<std::ui
 // KHR_texture_transform: scale, then rotation, then offset, in glTF's texture space (v down).
 void transform_uvs(const tinygltf::Value& extension, std::vector<Vec2>& uvs) {
   const auto pair = [&](const char* key, float otherwise) {
-    Vec2 v(otherwise);
-    if (!extension.Has(key) || !extension.Get(key).IsArray() || extension.Get(key).ArrayLen() != 2)
-      return v;
-    for (int i = 0; i < 2; ++i)
-      v[i] = static_cast<float>(extension.Get(key).Get(i).GetNumberAsDouble());
-    return v;
+    if (!extension.Has(key)) return Vec2(otherwise);
+    const tinygltf::Value& v = extension.Get(key);
+    if (!v.IsArray() || v.ArrayLen() != 2) return Vec2(otherwise);
+    return Vec2(static_cast<float>(v.Get(0).GetNumberAsDouble()),
+                static_cast<float>(v.Get(1).GetNumberAsDouble()));
   };
   const Vec2 offset = pair("offset", 0), scale = pair("scale", 1);
   const auto rotation = static_cast<float>(number_or(extension, "rotation", 0));

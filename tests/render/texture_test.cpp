@@ -1,6 +1,7 @@
 #include "render/texture.h"
 
 #include "catch.h"
+#include "gltf_document.h"
 #include "load_support.h"
 
 namespace psf::render {
@@ -68,6 +69,16 @@ TEST_CASE("grey becomes RGB, and float files are linear whatever is asked", "[te
   const std::string values("\x00\x00\x00\x3f\x00\x00\x00\x40\x00\x00\x80\x3e", 12);
   const std::string pfm = folder.write("one.pfm", "PF\n1 1\n-1.0\n" + values);
   check_color(Texture::load(pfm, ColorSpace::srgb).texel(0, 0), {0.5f, 2, 0.25f});
+}
+
+TEST_CASE("colours under a transparent alpha are as stored", "[texture]") {
+  // A PNG of one texel, 255 102 51 and alpha 0.
+  const std::string bytes = decode_base64(
+      "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP4"
+      "n2bMAAAFmQGZg+e4CgAAAABJRU5ErkJggg==");
+  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
+  const Texture texture = Texture::decode({data, bytes.size()}, "embedded", ColorSpace::linear);
+  check_color(texture.texel(0, 0), {1, 0.4f, 0.2f});
 }
 
 TEST_CASE("a texture that is missing, no picture or empty is named", "[texture]") {
