@@ -39,6 +39,7 @@ void check_columns(const File& file, const Walk& walk, const ChunkEntry& entry, 
     }
   }
   check_zeros(file, result.frame.prefix, place, result.frame.prefix.length, report);
+  for (Fault& fault : report.faults) fault.chunk = index;
 }
 
 std::vector<WalkedChunk> in_order(const Walk& walk) {

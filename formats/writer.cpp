@@ -180,7 +180,7 @@ struct Writer::State {
   void write_commit(std::uint32_t flags) {
     const std::uint64_t number = commits_ + 1;
     const Anchor base = flags == kClosed || number % kIndexLeap == 0 ? Anchor{}
-                        : number % kIndexStep == 7                   ? leap_
+                        : number % kIndexStep == 0                   ? leap_
                                                                      : previous_;
     Commit commit;
     commit.flags = flags;

@@ -72,7 +72,7 @@ TEST_CASE("a fault is named by frame, chunk, channel and records") {
   const auto padding = faults(
       [](test::Bytes& bytes) { flip(bytes, test::frames(bytes, "CHNK").at(2).offset + 4095); });
   REQUIRE(padding.size() == 1);
-  CHECK(has(padding[0], "CHNK"));
+  CHECK(has(padding[0], "CHNK 2: "));
   CHECK(has(padding[0], "padding"));
 
   const auto commit = faults(

@@ -2,6 +2,8 @@
 // made again.
 #include "golden.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -19,7 +21,8 @@ using namespace psf::formats;
 
 namespace {
 
-const std::string kData = std::string(PSF_SOURCE_DIR) + "/sample_data/";
+const std::string kData = PSF_SOURCE_DIR "/sample_data/";
+const std::string kScript = PSF_SOURCE_DIR "/tests/formats/read_pvb.py";
 
 std::string output_of(const std::string& command) {
   std::string text;
@@ -79,8 +82,7 @@ TEST_CASE("a reader written from the spec alone gets every value") {
     return;
   }
   for (const std::string name : {"golden-raw.pvb", "golden-tail.pvb"}) {
-    const std::string script = std::string(PSF_SOURCE_DIR) + "/tests/formats/read_pvb.py";
-    std::istringstream lines(output_of("python3 '" + script + "' '" + kData + name + "'"));
+    std::istringstream lines(output_of(fmt::format("python3 '{}' '{}{}'", kScript, kData, name)));
     const Head head = test::golden_head();
     std::string channel, type, components, encoding, values;
     std::size_t k = 0;
@@ -100,7 +102,7 @@ TEST_CASE("a reader written from the spec alone gets every value") {
 TEST_CASE("the example of the spec is what the writer writes") {
   const test::Scratch scratch;
   test::write_example(scratch.path("example.pvb"));
-  std::ifstream in(std::string(PSF_SOURCE_DIR) + "/formats/README.md");
+  std::ifstream in(PSF_SOURCE_DIR "/formats/README.md");
   const std::string spec((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   // Rows stand in the spec in this order, with headings between them.
   std::istringstream rows(test::hex_dump(scratch.path("example.pvb")));

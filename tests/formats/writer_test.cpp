@@ -176,6 +176,17 @@ TEST_CASE("the index is whole over thousands of commits, and its cost stays smal
     bytes = writer.bytes_written();
   }
   CHECK(Reader(path).passes().size() == kCommits);
+  // Every chunk and every commit is one: commit k has chunks up to k, and begins its index as the
+  // rule has it.
+  const test::Bytes file = test::load(path);
+  std::uint64_t k = 0, wrong = 0;
+  for (const auto& commit : test::frames(file, "CMIT")) {
+    ++k;
+    const std::uint64_t first = k % 4096 == 0 ? 0 : k % 64 == 0 ? k / 4096 * 4096 : k - 1;
+    wrong += test::get(file, commit.offset + 64 + 56, 8) != first;
+  }
+  CHECK(k == kCommits);
+  CHECK(wrong == 0);
   CHECK(check(path).faults.empty());
   // A chunk and a commit are a page each; the 64 whole indices add 32 bytes a chunk each.
   CHECK(bytes < kCommits * (2 * 4096 + 64 * 32));

@@ -94,7 +94,8 @@ TEST_CASE("Point, spot and directional lights follow their laws without noise") 
     spot.cos_inner = 0.9f;
     spot.cos_outer = 0.7f;
     const double full = double{kRho} / kPiD * 10 / 4;
-    for (const auto& [cosine, share] : {std::pair{0.95, 1.0}, {0.8, 0.5}, {0.69, 0.0}}) {
+    for (const auto& [cosine, share] :
+         {std::pair{0.95, 1.0}, {0.8, 0.5}, {0.75, 0.15625}, {0.69, 0.0}}) {
       const double sine = std::sqrt(1 - cosine * cosine);
       spot.direction = Vec3(static_cast<float>(sine), static_cast<float>(-cosine), 0);
       scene.lights = {spot};

@@ -145,3 +145,18 @@ TEST_CASE(
   scene.environment.radiance = grey(1);
   CHECK(make(scene, "path")->light_names() == std::vector<std::string>{"lamp", "mesh 1", "bulb"});
 }
+
+TEST_CASE("A sphere that glows on both sides does not light its own outside") {
+  Scene scene;
+  const int glow = add_material(scene, MaterialKind::diffuse, 0.5f, 2);
+  scene.materials.back().emits_two_sided = true;
+  scene.spheres.push_back({"", {30, 0, 0}, 1, glow});
+  const auto path = make(scene, "path");
+  for (std::uint64_t i = 0; i < 256; ++i) {
+    const PathRecord record =
+        trace(*path, ray({30, 0.5f, 4}, {30, 0.3f, 0}), SamplerKind::sobol, 0, i);
+    REQUIRE(record.unfiltered.y == 2);
+    REQUIRE(record.contribution.y == 0);
+    REQUIRE(record.visibility == 0);
+  }
+}
