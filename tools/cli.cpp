@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "core/interrupt.h"
 #include "formats/error.h"
@@ -26,6 +28,14 @@ const CLI::App* selected(const CLI::App* app) {
 std::string full_name(const CLI::App* app) {
   const CLI::App* parent = app->get_parent();
   return parent == nullptr ? app->get_name() : full_name(parent) + " " + app->get_name();
+}
+
+// CLI11 lists what is left over backwards, and does not say what it took for a missing verb.
+std::string explain(const CLI::App& command, const CLI::ParseError& error) {
+  const std::vector<std::string> rest = command.remaining();
+  if (rest.empty()) return error.what();
+  if (command.get_require_subcommand_min() > 0) return "there is no verb " + rest.front();
+  return (rest.front().starts_with("-") ? "unknown option " : "unexpected argument ") + rest.front();
 }
 
 }  // namespace
@@ -51,8 +61,9 @@ int run_tool(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::Success& success) {  // --help, --version
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
-    const std::string command = full_name(selected(&app));
-    return fail(command, fmt::format("{}; see {} --help", error.what(), command), ErrorCode::usage);
+    const CLI::App* command = selected(&app);
+    const std::string name = full_name(command);
+    return fail(name, fmt::format("{}; see {} --help", explain(*command, error), name), ErrorCode::usage);
   } catch (const Error& error) {
     return fail(app.get_name(), error.what(), error.code());
   } catch (const std::bad_alloc&) {

@@ -25,6 +25,7 @@ WeightTerms WeightTerms::none() {
   WeightTerms terms;
   terms.normal.reset();
   terms.reflectance.reset();
+  terms.visibility = false;
   return terms;
 }
 
@@ -46,21 +47,24 @@ void Parameters::validate() const {
 
 std::vector<ChannelNeed> optional_channels(const Parameters& parameters) {
   std::vector<ChannelNeed> needs;
-  const auto need = [&needs](bool wanted, std::string_view channel, std::string_view by) {
-    if (wanted) needs.push_back({channel, by});
+  const auto need = [&needs](bool wanted, std::string_view channel, std::string_view by,
+                             std::string_view instead) {
+    if (wanted) needs.push_back({channel, by, instead});
   };
   const WeightTerms& weights = parameters.weights;
   const bool disk = parameters.estimator == Estimator::disk;
-  need(weights.normal.has_value(), "normal", "--normal");
-  need(weights.plane.has_value(), "normal", "--plane");
-  need(disk, "normal", "--estimator disk");
-  need(weights.reflectance.has_value(), "reflectance", "--reflectance");
-  need(parameters.demodulate, "reflectance", "--demodulate");
-  need(weights.visibility, "visibility", "--visibility");
-  need(weights.hit_distance.has_value(), "hit_distance", "--hit-distance");
-  need(weights.direction.has_value(), "direction", "--direction");
-  need(disk, "direction", "--estimator disk");
-  need(weights.material, "material", "--material");
+  const char* average = "give --estimator average";
+  need(weights.normal.has_value(), "normal", "--normal", "give --normal off");
+  need(weights.plane.has_value(), "normal", "--plane", "give --plane off");
+  need(disk, "normal", "--estimator disk", average);
+  need(weights.reflectance.has_value(), "reflectance", "--reflectance", "give --reflectance off");
+  need(parameters.demodulate, "reflectance", "--demodulate", "leave --demodulate out");
+  need(weights.visibility, "visibility", "--visibility", "give --visibility=off");
+  need(weights.hit_distance.has_value(), "hit_distance", "--hit-distance",
+       "give --hit-distance off");
+  need(weights.direction.has_value(), "direction", "--direction", "give --direction off");
+  need(disk, "direction", "--estimator disk", average);
+  need(weights.material, "material", "--material", "leave --material out");
   return needs;
 }
 

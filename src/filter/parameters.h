@@ -45,7 +45,7 @@ struct BlockSize {
 struct WeightTerms {
   std::optional<float> normal = 0.95f;       // n_i . n_j >= t, t in [-1, 1]
   std::optional<float> reflectance = 0.05f;  // norm(rho_i - rho_j) <= t, t >= 0
-  bool visibility = false;                   // equal bits
+  bool visibility = true;                    // equal bits
   std::optional<float> hit_distance;         // relative difference <= t, t >= 0
   std::optional<float> plane;                // abs((x_j - x_i) . n_i) <= t r_i, t >= 0
   std::optional<float> direction;            // omega_i . omega_j >= t, t in [-1, 1]
@@ -74,9 +74,10 @@ struct Parameters {
   void validate() const;
 };
 
-// A channel that parameters need, and which of them: {"visibility", "--visibility"}.
+// A channel that parameters need, which of them, and how to do without:
+// {"normal", "--normal", "give --normal off"}.
 struct ChannelNeed {
-  std::string_view channel, wanted_by;
+  std::string_view channel, wanted_by, instead;
 };
 // Beyond `position`, `throughput`, `contribution`, `distance` and `pixel`, which every dump has.
 [[nodiscard]] std::vector<ChannelNeed> optional_channels(const Parameters& parameters);

@@ -81,18 +81,18 @@ std::optional<std::size_t> Dump::find(const char* channel, Type type,
 }
 
 std::size_t Dump::require(const char* channel, Type type, std::size_t components,
-                          const std::string& wanted_by) const {
+                          std::string_view wanted_by, std::string_view instead) const {
   const std::optional<std::size_t> place = find(channel, type, components);
   if (place) return *place;
   throw Error(ErrorCode::bad_input,
               fmt::format("{}: has no channel {}, which {} needs; render a dump that has it{}",
                           reader_.path(), channel, wanted_by,
-                          wanted_by.starts_with("--") ? ", or leave the option out" : ""));
+                          instead.empty() ? "" : ", or " + std::string(instead)));
 }
 
 ChannelSet Dump::select(const filter::Parameters& parameters, bool guides) const {
   ChannelSet set;
-  const std::string filter = "the filter";
+  constexpr std::string_view filter = "the filter";
   set.position = require("position", Type::f32, 3, filter);
   set.throughput = require("throughput", Type::f32, 3, filter);
   set.contribution = require("contribution", Type::f32, 3, filter);
@@ -107,14 +107,17 @@ ChannelSet Dump::select(const filter::Parameters& parameters, bool guides) const
                    ? std::optional(require("camera", Type::u16, 1, "a dump of several cameras"))
                    : find("camera", Type::u16, 1);
   for (const filter::ChannelNeed& need : filter::optional_channels(parameters)) {
-    const std::string by(need.wanted_by);
-    if (need.channel == "normal") set.normal = require("normal", Type::f32, 3, by);
-    if (need.channel == "reflectance") set.reflectance = require("reflectance", Type::f32, 3, by);
-    if (need.channel == "visibility") set.visibility = require("visibility", Type::u32, 1, by);
-    if (need.channel == "hit_distance")
-      set.hit_distance = require("hit_distance", Type::f32, 1, by);
-    if (need.channel == "direction") set.direction = require("direction", Type::f32, 3, by);
-    if (need.channel == "material") set.material = require("material", Type::u32, 1, by);
+    const auto set_needed = [&](std::optional<std::size_t>& place, const char* channel, Type type,
+                                std::size_t components) {
+      if (need.channel != channel) return;
+      place = require(channel, type, components, need.wanted_by, need.instead);
+    };
+    set_needed(set.normal, "normal", Type::f32, 3);
+    set_needed(set.reflectance, "reflectance", Type::f32, 3);
+    set_needed(set.visibility, "visibility", Type::u32, 1);
+    set_needed(set.hit_distance, "hit_distance", Type::f32, 1);
+    set_needed(set.direction, "direction", Type::f32, 3);
+    set_needed(set.material, "material", Type::u32, 1);
   }
   if (guides) {
     set.normal = find("normal", Type::f32, 3);

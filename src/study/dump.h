@@ -49,7 +49,8 @@ class Dump {
   [[nodiscard]] std::optional<std::size_t> find(const char* channel, formats::Type type,
                                                 std::size_t components) const;
   [[nodiscard]] std::size_t require(const char* channel, formats::Type type, std::size_t components,
-                                    const std::string& wanted_by) const;
+                                    std::string_view wanted_by,
+                                    std::string_view instead = {}) const;
   void check_pixels(const filter::PathRange& range, const BlockRecords& records) const;
 
   formats::Reader reader_;

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,8 @@ struct FilterOptions {
   std::string r0, block, normal, reflectance, hit_distance, plane, direction, sources, passes,
       snapshots;
   double delta = filter::Radius().delta;
-  bool visibility = false, material = false, no_weights = false;
+  std::optional<bool> visibility;
+  bool material = false, no_weights = false;
   bool demodulate = false, no_refusals = false;
   std::uint32_t iterations = 1;
   std::string search = "plain", estimator = "average", radius_count = "samples";
@@ -56,7 +58,7 @@ filter::WeightTerms weights_of(const FilterOptions& options) {
   set(terms.hit_distance, options.hit_distance, "--hit-distance");
   set(terms.plane, options.plane, "--plane");
   set(terms.direction, options.direction, "--direction");
-  terms.visibility = options.visibility;
+  terms.visibility = options.visibility.value_or(terms.visibility);
   terms.material = options.material;
   return terms;
 }
@@ -199,7 +201,10 @@ void add_weights(CLI::App& command, FilterOptions& options) {
   term("--plane", options.plane, "at most T radii off the tangent plane (default off)");
   term("--direction", options.direction,
        "directions to the camera: omega_i . omega_j >= T (default off)");
-  command.add_flag("--visibility", options.visibility, "the same lights are visible")
+  command
+      .add_flag_function(
+          "--visibility", [&options](std::int64_t on) { options.visibility = on > 0; },
+          "the same lights are visible (default on; --visibility=off)")
       ->group("Weights");
   command.add_flag("--material", options.material, "the same material")->group("Weights");
   command.add_flag("--no-weights", options.no_weights, "no terms but those given")
