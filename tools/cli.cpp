@@ -35,13 +35,15 @@ std::string explain(const CLI::App& command, const CLI::ParseError& error) {
   const std::vector<std::string> rest = command.remaining();
   if (rest.empty()) return error.what();
   if (command.get_require_subcommand_min() > 0) return "there is no verb " + rest.front();
-  return (rest.front().starts_with("-") ? "unknown option " : "unexpected argument ") + rest.front();
+  return (rest.front().starts_with("-") ? "unknown option " : "unexpected argument ") +
+         rest.front();
 }
 
 }  // namespace
 
 void add_common(CLI::App& command, CommonOptions& options, bool with_json) {
-  command.add_option("--threads", options.threads, "threads to use; 0: all cores")->capture_default_str();
+  command.add_option("--threads", options.threads, "threads to use; 0: all cores")
+      ->capture_default_str();
   command.add_flag("--quiet", options.quiet, "no progress and no notes on stderr");
   if (with_json) {
     command.add_option("--json", options.json, "write the figures to this file, for programs")
@@ -63,7 +65,8 @@ int run_tool(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const CLI::App* command = selected(&app);
     const std::string name = full_name(command);
-    return fail(name, fmt::format("{}; see {} --help", explain(*command, error), name), ErrorCode::usage);
+    return fail(name, fmt::format("{}; see {} --help", explain(*command, error), name),
+                ErrorCode::usage);
   } catch (const Error& error) {
     return fail(app.get_name(), error.what(), error.code());
   } catch (const std::bad_alloc&) {

@@ -1,4 +1,5 @@
-// What all tools share: common options, and one place where errors become one line and an exit code.
+// What all tools share: common options, and one place where errors become one line and an exit
+// code.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,13 +11,14 @@ namespace psf::tools {
 struct CommonOptions {
   std::size_t threads = 0;  // 0: all cores
   bool quiet = false;
-  std::string json;         // figures for programs go here; empty: nowhere
+  std::string json;  // figures for programs go here; empty: nowhere
 };
 
 // --threads, --quiet, --json. A verb without figures leaves json out.
 void add_common(CLI::App& command, CommonOptions& options, bool with_json = true);
 
-// Parses, runs the callbacks, returns the exit code of ErrorCode. `command` callbacks do the work and throw.
+// Parses, runs the callbacks, returns the exit code of ErrorCode. `command` callbacks do the work
+// and throw.
 int run_tool(CLI::App& app, int argc, char** argv);
 
 // The example that closes every --help, set in its own paragraph.

@@ -24,7 +24,9 @@ void watch_interrupts() {
   std::signal(SIGTERM, note);
 }
 
-bool interrupted() noexcept { return flag; }
+bool interrupted() noexcept {
+  return flag;
+}
 
 void throw_if_interrupted(const char* what) {
   if (interrupted()) throw Error(ErrorCode::interrupted, std::string("interrupted: ") + what);

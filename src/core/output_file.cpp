@@ -20,15 +20,16 @@ OutputFile::OutputFile(const std::string& path) : path_(path) {
     throw Error(ErrorCode::io, path + ": is a folder, a file name is needed");
   }
   if (!fs::is_directory(folder)) {
-    throw Error(ErrorCode::io, path + ": the folder " + folder.string() + " does not exist, create it first");
+    throw Error(ErrorCode::io,
+                path + ": the folder " + folder.string() + " does not exist, create it first");
   }
   // A device or a pipe takes bytes as they come; renaming would put a plain file in its place.
   if (fs::exists(target) && !fs::is_regular_file(target)) {
     temporary_ = path_;
     return;
   }
-  temporary_ = (folder / ("." + target.stem().string() + "." + std::to_string(getpid()) + ".partial" +
-                          target.extension().string()))
+  temporary_ = (folder / ("." + target.stem().string() + "." + std::to_string(getpid()) +
+                          ".partial" + target.extension().string()))
                    .string();
   if (!std::ofstream(temporary_, std::ios::binary)) {
     throw Error(ErrorCode::io, path + ": cannot write here: " + std::strerror(errno));
@@ -41,7 +42,8 @@ OutputFile::~OutputFile() {
 
 void OutputFile::commit() {
   if (temporary_ != path_ && std::rename(temporary_.c_str(), path_.c_str()) != 0) {
-    throw Error(ErrorCode::io, path_ + ": cannot put the finished file in place: " + std::strerror(errno));
+    throw Error(ErrorCode::io,
+                path_ + ": cannot put the finished file in place: " + std::strerror(errno));
   }
   committed_ = true;
 }

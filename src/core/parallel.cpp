@@ -18,7 +18,8 @@ void parallel_for(std::size_t count, std::size_t grain,
 
 struct ThreadLimit::State {
   // In place: a copy of a global_control ends the control when it is destroyed.
-  explicit State(std::size_t threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
+  explicit State(std::size_t threads)
+      : control(tbb::global_control::max_allowed_parallelism, threads) {}
   tbb::global_control control;
 };
 

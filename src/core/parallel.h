@@ -7,9 +7,9 @@
 
 namespace psf::core {
 
-// Calls body(begin, end) for [0, grain), [grain, 2 grain), ... up to count, in any order, on all threads.
-// The ranges are fixed, so what is reduced per range and then summed in order is the same for any number
-// of threads. An exception of a body ends the loop and is thrown here.
+// Calls body(begin, end) for [0, grain), [grain, 2 grain), ... up to count, in any order, on all
+// threads. The ranges are fixed, so what is reduced per range and then summed in order is the same
+// for any number of threads. An exception of a body ends the loop and is thrown here.
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 

@@ -6,8 +6,8 @@
 
 namespace psf::film {
 
-// Linear up to kShoulder, above it an exponential that reaches 1 at infinity, with the same slope where they
-// meet: mid-tones stay true, lamps do not burn out. NaN and negative values are black.
+// Linear up to kShoulder, above it an exponential that reaches 1 at infinity, with the same slope
+// where they meet: mid-tones stay true, lamps do not burn out. NaN and negative values are black.
 [[nodiscard]] inline float tone_map(float linear) {
   constexpr float kShoulder = 0.7f;
   if (!(linear > 0)) return 0;

@@ -9,9 +9,9 @@
 #include <exception>
 #include <filesystem>
 
+#include "core/error.h"
 #include "core/output_file.h"
 #include "film/image.h"
-#include "core/error.h"
 
 namespace psf::film {
 namespace {
@@ -65,8 +65,9 @@ Image read_exr(const std::string& path) {
     }
     for (const Layer& layer : image.layers) {
       Imf::Slice target = slice(layer.values, image.width);
-      const auto origin = static_cast<std::ptrdiff_t>(window.min.x) +
-                          static_cast<std::ptrdiff_t>(window.min.y) * static_cast<std::ptrdiff_t>(image.width);
+      const auto origin =
+          static_cast<std::ptrdiff_t>(window.min.x) +
+          static_cast<std::ptrdiff_t>(window.min.y) * static_cast<std::ptrdiff_t>(image.width);
       target.base -= origin * static_cast<std::ptrdiff_t>(sizeof(float));
       buffer.insert(layer.channel, target);
     }

@@ -3,12 +3,13 @@
 #include <cassert>
 #include <filesystem>
 
-#include "core/output_file.h"
 #include "core/error.h"
+#include "core/output_file.h"
 
 namespace psf::film {
 
-void Image::add(const std::string& prefix, const std::string& suffixes, std::span<const float> values) {
+void Image::add(const std::string& prefix, const std::string& suffixes,
+                std::span<const float> values) {
   assert(values.size() == width * height * suffixes.size());
   for (std::size_t k = 0; k < suffixes.size(); ++k) {
     Layer layer{prefix + suffixes[k], std::vector<float>(width * height)};
@@ -45,7 +46,8 @@ std::vector<Rgb> Image::rgb(const std::string& prefix) const {
 void check_image_path(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
   if (extension != ".exr" && extension != ".png") {
-    throw Error(ErrorCode::usage, path + ": unknown picture format \"" + extension + "\", use .exr or .png");
+    throw Error(ErrorCode::usage,
+                path + ": unknown picture format \"" + extension + "\", use .exr or .png");
   }
   core::OutputFile probe(path);
 }

@@ -1,4 +1,5 @@
-// A picture with named float channels and attributes, and its files: EXR with everything, PNG to look at.
+// A picture with named float channels and attributes, and its files: EXR with everything, PNG to
+// look at.
 #pragma once
 
 #include <cstddef>
@@ -23,15 +24,17 @@ struct Image {
   std::vector<Layer> layers;
   std::vector<std::pair<std::string, std::string>> attributes;  // written as strings, in this order
 
-  // Adds channels prefix + suffix[k] (suffixes "RGB" or "XYZ" or "Y") from (height, width, suffix count) values.
+  // Adds channels prefix + suffix[k] (suffixes "RGB" or "XYZ" or "Y") from (height, width, suffix
+  // count) values.
   void add(const std::string& prefix, const std::string& suffixes, std::span<const float> values);
   [[nodiscard]] const std::vector<float>* find(const std::string& channel) const;
-  // The colours of `prefix`R, G, B as (height, width); throws Error{bad_input} naming file and channel.
+  // The colours of `prefix`R, G, B as (height, width); throws Error{bad_input} naming file and
+  // channel.
   [[nodiscard]] std::vector<Rgb> rgb(const std::string& prefix = "") const;
 };
 
-// Single-part scanline float32 EXR, ZIP compressed. Throws Error{io}. The caller names a path whose folder
-// exists; the file appears whole or not at all.
+// Single-part scanline float32 EXR, ZIP compressed. Throws Error{io}. The caller names a path whose
+// folder exists; the file appears whole or not at all.
 void write_exr(const std::string& path, const Image& image);
 // Reads every channel of a single-part EXR as float. Throws Error{io} or Error{bad_input}.
 [[nodiscard]] Image read_exr(const std::string& path);

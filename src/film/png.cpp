@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/error.h"
 #include "core/output_file.h"
 #include "film/display.h"
 #include "film/image.h"
-#include "core/error.h"
 
 namespace psf::film {
 

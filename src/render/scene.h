@@ -19,7 +19,7 @@ enum class MaterialKind : std::uint8_t {
   mirror,     // perfect, tinted by reflectance
   glass,      // smooth dielectric of index `ior`, transmission tinted by reflectance
   conductor,  // GGX, Fresnel by Schlick with `reflectance` at normal incidence
-  coat        // dielectric GGX coat of `ior` over a diffuse base; `metalness` blends it into a conductor
+  coat  // dielectric GGX coat of `ior` over a diffuse base; `metalness` blends it into a conductor
 };
 
 struct Material {
@@ -31,9 +31,9 @@ struct Material {
   float metalness = 0;
   int roughness_metalness_texture = kNone;  // glTF: G multiplies roughness, B multiplies metalness
   float ior = 1.5f;
-  bool two_sided = true;        // false: the back side reflects nothing
+  bool two_sided = true;  // false: the back side reflects nothing
   bool emits_two_sided = false;
-  Rgb emission{0, 0, 0};        // radiance of the front side
+  Rgb emission{0, 0, 0};  // radiance of the front side
   int emission_texture = kNone;
 };
 
@@ -60,18 +60,19 @@ enum class LightKind : std::uint8_t { point, directional, spot };
 struct Light {
   std::string name;
   LightKind kind = LightKind::point;
-  Vec3 position;                // point, spot
-  Vec3 direction{0, 0, -1};     // unit, in which the light travels: directional, spot
-  Rgb intensity{1, 1, 1};       // point, spot: radiant intensity; directional: irradiance on a facing surface
+  Vec3 position;             // point, spot
+  Vec3 direction{0, 0, -1};  // unit, in which the light travels: directional, spot
+  Rgb intensity{1, 1,
+                1};  // point, spot: radiant intensity; directional: irradiance on a facing surface
   float cos_inner = 1, cos_outer = 0;  // spot: full inside, smooth falloff to 0 at outer
-  float angle = 0;              // directional: angular radius in radians, 0 for a point at infinity
+  float angle = 0;  // directional: angular radius in radians, 0 for a point at infinity
 };
 
 // Light from infinity: a constant sky, or an equirectangular map times `radiance`.
 struct Environment {
   Rgb radiance{0, 0, 0};
-  int texture = kNone;   // latitude-longitude; +y is up, the centre of the map looks along -z
-  float rotation = 0;    // radians about +y
+  int texture = kNone;  // latitude-longitude; +y is up, the centre of the map looks along -z
+  float rotation = 0;   // radians about +y
 };
 
 struct Camera {
@@ -79,13 +80,14 @@ struct Camera {
   Vec3 eye{0, 0, 0}, target{0, 0, -1}, up{0, 1, 0};
   float fov = 0.7f;  // horizontal field of view, radians
   std::uint32_t width = 512, height = 512;
-  float lens_radius = 0;      // 0: pinhole
-  float focus_distance = 1;   // along the view axis, used where lens_radius > 0
+  float lens_radius = 0;     // 0: pinhole
+  float focus_distance = 1;  // along the view axis, used where lens_radius > 0
 };
 
 struct Scene {
   std::string name;  // file name without folder
-  std::string hash;  // hexadecimal, over everything that shapes the picture (files and command-line changes)
+  std::string hash;  // hexadecimal, over everything that shapes the picture (files and command-line
+                     // changes)
   std::vector<Texture> textures;
   std::vector<Material> materials;
   std::vector<Mesh> meshes;

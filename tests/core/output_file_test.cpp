@@ -49,7 +49,8 @@ TEST_CASE("the temporary keeps the extension, by which libraries choose the form
 
 TEST_CASE("a missing folder, a folder as file name and an empty name are told at once") {
   const TempFolder folder;
-  for (const std::string& path : {folder / "nowhere/out.exr", folder.path().string(), std::string()}) {
+  for (const std::string& path :
+       {folder / "nowhere/out.exr", folder.path().string(), std::string()}) {
     try {
       OutputFile file(path);
       FAIL("no error for \"" << path << '"');

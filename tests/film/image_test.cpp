@@ -8,8 +8,8 @@
 #include <iterator>
 
 #include "catch.h"
-#include "film/display.h"
 #include "core/error.h"
+#include "film/display.h"
 #include "temp_folder.h"
 
 using psf::film::Image;
@@ -59,7 +59,8 @@ TEST_CASE("an EXR keeps every channel, value and attribute") {
   CHECK(neighbors[4] == INFINITY);
   CHECK(neighbors[5] == -6);
   for (const auto& attribute : image.attributes) {
-    CHECK(std::find(read.attributes.begin(), read.attributes.end(), attribute) != read.attributes.end());
+    CHECK(std::find(read.attributes.begin(), read.attributes.end(), attribute) !=
+          read.attributes.end());
   }
 }
 
@@ -91,7 +92,8 @@ TEST_CASE("a PNG is tone-mapped and sRGB") {
   Image image;
   image.width = 4;
   image.height = 1;
-  image.add("", "RGB", std::vector<float>{0, 0, 0, 0.5f, 0.5f, 0.5f, 1000, 1000, 1000, NAN, -1, 0.2140411f});
+  image.add("", "RGB",
+            std::vector<float>{0, 0, 0, 0.5f, 0.5f, 0.5f, 1000, 1000, 1000, NAN, -1, 0.2140411f});
   psf::film::write_image(folder / "a.png", image);
   const auto input = OIIO::ImageInput::open(folder / "a.png");
   REQUIRE(input);

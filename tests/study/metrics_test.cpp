@@ -30,7 +30,8 @@ TEST_CASE("errors are means over pixels and colour channels, relative ones by th
 
 TEST_CASE("a value that is not finite is never hidden") {
   const std::vector<Rgb> reference = {Rgb(1, 1, 1)};
-  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     const std::vector<Rgb> picture = {Rgb(1, bad, 1)};
     CHECK_FALSE(std::isfinite(compare(picture, reference).rel_mse));
     CHECK_FALSE(std::isfinite(compare(reference, picture).rel_mse));

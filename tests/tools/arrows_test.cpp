@@ -26,7 +26,9 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"render", {"core", "film", "formats"}},
 };
 
-fs::path path_of(const std::string& folder) { return folder == "formats" ? kRoot / folder : kRoot / "src" / folder; }
+fs::path path_of(const std::string& folder) {
+  return folder == "formats" ? kRoot / folder : kRoot / "src" / folder;
+}
 
 }  // namespace
 
@@ -42,7 +44,8 @@ TEST_CASE("every include of a folder follows the arrows") {
         std::smatch match;
         if (!std::regex_search(line, match, include)) continue;
         const std::string target = match[2];
-        const bool fine = target == folder || allowed.contains(target) || allowed.contains(match[1]);
+        const bool fine =
+            target == folder || allowed.contains(target) || allowed.contains(match[1]);
         INFO(entry.path().string() << ": " << line);
         CHECK(fine);
       }
@@ -59,5 +62,6 @@ TEST_CASE("every folder of the source has its arrows here") {
 
 TEST_CASE("psf does not link Embree, psf-render does") {
   CHECK(psf::tests::run("ldd " PSF_BINARY_DIR "/psf").out.find("embree") == std::string::npos);
-  CHECK(psf::tests::run("ldd " PSF_BINARY_DIR "/psf-render").out.find("embree") != std::string::npos);
+  CHECK(psf::tests::run("ldd " PSF_BINARY_DIR "/psf-render").out.find("embree") !=
+        std::string::npos);
 }

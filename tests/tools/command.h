@@ -25,8 +25,8 @@ inline std::string read_text(const std::string& path) {
 // `command`: "psf info x.pvb"; the first word is looked up among the programs just built.
 inline Outcome run(const std::string& command) {
   const TempFolder folder;
-  const std::string line = "PATH=" PSF_BINARY_DIR ":\"$PATH\" " + command + " >" + folder / "out" + " 2>" +
-                           folder / "err" + " </dev/null";
+  const std::string line = "PATH=" PSF_BINARY_DIR ":\"$PATH\" " + command + " >" + folder / "out" +
+                           " 2>" + folder / "err" + " </dev/null";
   const int status = std::system(line.c_str());
   Outcome outcome;
   outcome.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

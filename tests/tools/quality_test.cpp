@@ -1,5 +1,6 @@
-// What the filter is worth: the error of the filtered picture against a reference of 4,096 passes, at most a given
-// fraction of the unfiltered one's, with the default parameters for every scene. 256 x 256, 16 passes, path.
+// What the filter is worth: the error of the filtered picture against a reference of 4,096 passes,
+// at most a given fraction of the unfiltered one's, with the default parameters for every scene.
+// 256 x 256, 16 passes, path.
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -32,8 +33,10 @@ double relative_mse(const std::string& picture, const std::string& reference) {
 // How many times the filter takes the error down.
 double gain(const std::string& scene, const std::string& reference) {
   const TempFolder folder;
-  const std::string dump = folder / "dump.pvb", before = folder / "before.exr", after = folder / "after.exr";
-  run_well("psf-render " + scene + " --size 256x256 --passes 16 --quiet -o " + dump + " --image " + before);
+  const std::string dump = folder / "dump.pvb", before = folder / "before.exr",
+                    after = folder / "after.exr";
+  run_well("psf-render " + scene + " --size 256x256 --passes 16 --quiet -o " + dump + " --image " +
+           before);
   run_well("psf filter " + dump + " --quiet -o " + after);
   return relative_mse(before, reference) / relative_mse(after, reference);
 }
@@ -41,7 +44,8 @@ double gain(const std::string& scene, const std::string& reference) {
 // The folder of scenes that the project did not make; empty where there is none.
 std::string shared_scenes() {
   const char* named = std::getenv("PSF_SCENES");
-  const fs::path folder = named != nullptr ? fs::path(named) : fs::path(PSF_SOURCE_DIR) / "../shared/scenes";
+  const fs::path folder =
+      named != nullptr ? fs::path(named) : fs::path(PSF_SOURCE_DIR) / "../shared/scenes";
   return fs::is_directory(folder) ? folder.string() : "";
 }
 
@@ -63,9 +67,11 @@ TEST_CASE("Sponza with sky and sun: at most a fifth of the error is left", "[.][
   }
   const TempFolder folder;
   const std::string reference = folder / "reference.exr";
-  const std::string scene = scenes +
-                            "/sponza/sponza.obj --eye 14.4499,6.89415,-1.18547 --target 13.4563,6.78438,-1.15861 "
-                            "--fov 90.47 --sky 1,1,1 --sun 0.2,1,0.15 --sun-irradiance 10,9,8";
-  run_well("psf-render " + scene + " --size 256x256 --passes 4096 --seed 1 --quiet --image " + reference);
+  const std::string scene =
+      scenes +
+      "/sponza/sponza.obj --eye 14.4499,6.89415,-1.18547 --target 13.4563,6.78438,-1.15861 "
+      "--fov 90.47 --sky 1,1,1 --sun 0.2,1,0.15 --sun-irradiance 10,9,8";
+  run_well("psf-render " + scene + " --size 256x256 --passes 4096 --seed 1 --quiet --image " +
+           reference);
   CHECK(gain(scene, reference) >= 5);
 }

@@ -4,7 +4,8 @@
 #include "version.h"
 
 int main(int argc, char** argv) {
-  CLI::App app("Path space filtering, offline: filters, checks and compares what a renderer dumped.", "psf");
+  CLI::App app(
+      "Path space filtering, offline: filters, checks and compares what a renderer dumped.", "psf");
   app.set_version_flag("--version", std::string("psf ") + psf::tools::kVersion);
   app.require_subcommand(1);
   psf::tools::set_example(app, "psf filter scene.pvb -o filtered.exr");

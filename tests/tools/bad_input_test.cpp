@@ -1,0 +1,171 @@
+// What a stranger does wrong: one clear line each, the right exit code, nothing half-written.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "catch.h"
+#include "command.h"
+
+namespace fs = std::filesystem;
+using psf::tests::Outcome;
+using psf::tests::run;
+using psf::tests::TempFolder;
+
+namespace {
+
+struct Mistake {
+  std::string command;  // FOLDER is the test's folder, SAMPLES that of the sample data
+  int code;
+  std::string message;  // part of the one line on stderr
+};
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos;
+       at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+// Folder of the test with a few files to go wrong with.
+class Workplace {
+ public:
+  Workplace() {
+    write("malformed.json", "{\"shapes\": [}");
+    write("empty.json", "{}");
+    write("no_picture.json", scene("[0, 0, 0]", "\"reflectance_map\": \"nowhere.png\""));
+    write("unknown_key.json", scene("[0, 0, 0]", "\"reflectence\": 0.5"));
+    write("nan.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n");
+    write("degenerate.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\n");
+    write("scene.xyz", "");
+    write("text.pvb", "this is no dump");
+    const std::string size = " --size 16x16 --passes 2 --quiet -o ";
+    REQUIRE(run("psf-render " + samples() + "cornell.json" + size + (folder_ / "good.pvb")).code ==
+            0);
+    fs::copy_file(folder_ / "good.pvb", folder_ / "cut.pvb");
+    fs::resize_file(folder_ / "cut.pvb", fs::file_size(folder_ / "good.pvb") / 3);
+    REQUIRE(run("psf-render " + samples() + "cornell.json" + size + (folder_ / "lacking.pvb") +
+                " --channels normal,reflectance")
+                .code == 0);
+  }
+  [[nodiscard]] std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_.path())) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+  // Bytes after the last commit, as a killed writer leaves them.
+  void add_tail(const std::string& name) const {
+    std::ofstream(folder_ / name, std::ios::app) << std::string(5000, '\x89');
+  }
+  [[nodiscard]] Outcome make(const Mistake& mistake) const {
+    return run(replaced(replaced(mistake.command, "FOLDER", folder_.path().string()), "SAMPLES/",
+                        samples()));
+  }
+
+ private:
+  static std::string samples() { return PSF_SOURCE_DIR "/sample_data/"; }
+  static std::string scene(const std::string& center, const std::string& material) {
+    return "{\"materials\": [{\"name\": \"m\", \"kind\": \"diffuse\", " + material +
+           "}], \"shapes\": [{\"shape\": \"sphere\", \"center\": " + center +
+           ", \"radius\": 1, \"material\": \"m\"}]}";
+  }
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+  }
+
+  TempFolder folder_;
+};
+
+}  // namespace
+
+TEST_CASE("every mistake is one line, has its exit code and leaves nothing behind") {
+  const Workplace workplace;
+  const std::vector<std::string> before = workplace.files();
+  const std::vector<Mistake> mistakes = {
+      // scenes
+      {"psf-render FOLDER/nowhere.json -o FOLDER/x.pvb", 4, "nowhere.json: no such file"},
+      {"psf-render FOLDER/scene.xyz -o FOLDER/x.pvb", 3, ".xyz"},
+      {"psf-render FOLDER/malformed.json -o FOLDER/x.pvb", 3,
+       "malformed.json:1:13: malformed JSON"},
+      {"psf-render FOLDER/empty.json -o FOLDER/x.pvb", 3, "empty.json: "},
+      {"psf-render FOLDER/unknown_key.json -o FOLDER/x.pvb", 3,
+       "/materials/0: unknown key \"reflectence\"; did you mean \"reflectance\"?"},
+      {"psf-render FOLDER/no_picture.json -o FOLDER/x.pvb", 4, "nowhere.png"},
+      {"psf-render FOLDER/nan.obj -o FOLDER/x.pvb", 3, "nan.obj:3: vertex 3 is not finite"},
+      // what psf-render is asked for
+      {"psf-render SAMPLES/cornell.json", 2, "nothing to write"},
+      {"psf-render SAMPLES/cornell.json -o FOLDER/x.pvb --size 0x10", 2, "--size"},
+      {"psf-render SAMPLES/cornell.json -o FOLDER/x.pvb --passes 0", 2, "--passes"},
+      {"psf-render SAMPLES/cornell.json -o FOLDER/x.pvb --eye 1,2", 2, "--eye"},
+      {"psf-render SAMPLES/cornell.json -o FOLDER/x.pvb --pases 2", 2, "unknown option --pases"},
+      {"psf-render SAMPLES/cornell.json -o FOLDER/x.pvb --camera left", 2, "its cameras: front"},
+      {"psf-render SAMPLES/cornell.json -o FOLDER/x.pvb --integrator bdpt", 2, "path"},
+      {"psf-render SAMPLES/cornell.json -o FOLDER/nowhere/x.pvb", 4,
+       "does not exist, create it first"},
+      {"psf-render SAMPLES/cornell.json --image FOLDER/x.jpg", 2, "use .exr or .png"},
+      // dumps
+      {"psf filter FOLDER/nowhere.pvb -o FOLDER/x.exr", 4, "nowhere.pvb: "},
+      {"psf filter FOLDER/text.pvb -o FOLDER/x.exr", 3, "is no path-vertex buffer"},
+      {"psf filter FOLDER/cut.pvb -o FOLDER/x.exr", 3, "cut.pvb: "},
+      {"psf filter FOLDER/lacking.pvb -o FOLDER/x.exr", 3,
+       "has no channel visibility, which --visibility needs; render a dump that has it, or give "
+       "--visibility=off"},
+      {"psf info FOLDER/text.pvb", 3, "is no path-vertex buffer"},
+      {"psf verify FOLDER/nowhere.pvb", 4, "nowhere.pvb: "},
+      // what psf is asked for
+      {"psf", 2, "see psf --help"},
+      {"psf fliter FOLDER/good.pvb", 2, "there is no verb fliter"},
+      {"psf filter FOLDER/good.pvb", 2, "--output is required"},
+      {"psf filter FOLDER/good.pvb -o FOLDER/x.exr --radus 1", 2, "unknown option --radus"},
+      {"psf filter FOLDER/good.pvb -o FOLDER/x.exr --r0 8furlong", 2,
+       "--r0: '8furlong' is no radius"},
+      {"psf filter FOLDER/good.pvb -o FOLDER/x.exr --delta 1", 2, "--delta"},
+      {"psf filter FOLDER/good.pvb -o FOLDER/x.exr --block 1^4", 2, "--block"},
+      {"psf filter FOLDER/good.pvb -o FOLDER/x.exr --normal 3", 2, "--normal"},
+      {"psf filter FOLDER/good.pvb -o FOLDER/x.exr --passes 1:9", 2, "has passes 0:2"},
+      {"psf filter FOLDER/good.pvb -o FOLDER/nowhere/x.exr", 4, "does not exist, create it first"},
+      {"psf filter FOLDER/good.pvb -o FOLDER/x.jpg", 2, "use .exr or .png"},
+  };
+  for (const Mistake& mistake : mistakes) {
+    const Outcome outcome = workplace.make(mistake);
+    INFO(mistake.command << "\n" << outcome.err);
+    CHECK(outcome.code == mistake.code);
+    CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+    CHECK(outcome.err.find(mistake.message) != std::string::npos);
+    CHECK(outcome.out.empty());
+    CHECK(workplace.files() == before);
+  }
+}
+
+TEST_CASE("a degenerate triangle is left out, counted, and the rest is rendered") {
+  const Workplace workplace;
+  const Outcome outcome = workplace.make(
+      {"psf-render FOLDER/degenerate.obj --size 8x8 --passes 1 -o FOLDER/x.pvb", 0, ""});
+  CHECK(outcome.code == 0);
+  CHECK(outcome.err.find("degenerate") != std::string::npos);
+}
+
+TEST_CASE("a dump whose writer was killed is filtered up to its last commit") {
+  const Workplace workplace;
+  workplace.add_tail("good.pvb");
+  const Outcome outcome =
+      workplace.make({"psf filter FOLDER/good.pvb -o FOLDER/x.exr --quiet", 0, ""});
+  CHECK(outcome.code == 0);
+  CHECK(outcome.out.find("512 in 2 passes") != std::string::npos);
+}
+
+TEST_CASE("every verb has a help with an example") {
+  for (const std::string command :
+       {"psf", "psf filter", "psf info", "psf verify", "psf compare", "psf-render"}) {
+    const Outcome outcome = run(command + " --help");
+    CHECK(outcome.code == 0);
+    CHECK(outcome.out.find("Example:\n  " + command.substr(0, command.find(' '))) !=
+          std::string::npos);
+    CHECK(outcome.err.empty());
+  }
+}
