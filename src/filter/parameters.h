@@ -25,8 +25,10 @@ enum class RadiusCount : std::uint8_t {
 };
 
 struct Radius {
-  double r0 = 0.02;  // >= 0; 0 filters nothing
-  RadiusBasis basis = RadiusBasis::distance;
+  // >= 0; 0 filters nothing. Pixels are the default because a fraction of the distance means another
+  // number of neighbours for every field of view and resolution; measured in README.md.
+  double r0 = 8;
+  RadiusBasis basis = RadiusBasis::footprint;
   // 0 <= delta < 1. 0 keeps the radius fixed: no longer consistent, but useful to look at one
   // radius.
   double delta = 1.0 / 3;

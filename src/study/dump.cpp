@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <functional>
 
 #include "core/error.h"
@@ -90,6 +91,16 @@ std::size_t Dump::require(const char* channel, Type type, std::size_t components
                           instead.empty() ? "" : ", or " + std::string(instead)));
 }
 
+void Dump::require_angles() const {
+  for (const formats::CameraInfo& camera : metadata_.cameras) {
+    if (std::isfinite(camera.angle_per_pixel) && camera.angle_per_pixel > 0) continue;
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: camera \"{}\" has no angle per pixel, which a radius in pixels "
+                            "needs; give the radius as a fraction of the distance, --r0 0.02",
+                            reader_.path(), camera.name));
+  }
+}
+
 ChannelSet Dump::select(const filter::Parameters& parameters, bool guides) const {
   ChannelSet set;
   constexpr std::string_view filter = "the filter";
@@ -100,6 +111,10 @@ ChannelSet Dump::select(const filter::Parameters& parameters, bool guides) const
   if (parameters.radius.basis != filter::RadiusBasis::world ||
       parameters.estimator == filter::Estimator::disk) {
     set.distance = require("distance", Type::f32, 1, "a radius that depends on the distance");
+  }
+  if (parameters.radius.basis == filter::RadiusBasis::footprint ||
+      parameters.estimator == filter::Estimator::disk) {
+    require_angles();
   }
   set.flags = find("flags", Type::u8, 1);
   set.unfiltered = find("unfiltered", Type::f32, 3);

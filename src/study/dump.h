@@ -51,6 +51,7 @@ class Dump {
   [[nodiscard]] std::size_t require(const char* channel, formats::Type type, std::size_t components,
                                     std::string_view wanted_by,
                                     std::string_view instead = {}) const;
+  void require_angles() const;
   void check_pixels(const filter::PathRange& range, const BlockRecords& records) const;
 
   formats::Reader reader_;

@@ -80,7 +80,7 @@ filter::WeightTerms subset(unsigned bits) {
 
 Case plain_case() {
   Case c;
-  c.parameters.radius.r0 = 0.3;
+  c.parameters.radius = {0.3, filter::RadiusBasis::distance};
   c.parameters.weights = subset(3);
   return c;
 }
@@ -130,7 +130,7 @@ TEST_CASE("Subsampled and unshaded records agree with the oracle, orphans too") 
     for (const double r0 : {0.0, 0.05, 0.3}) {
       Case c = plain_case();
       c.parameters.sources = sources;
-      c.parameters.radius.r0 = r0;
+      c.parameters.radius = {r0, filter::RadiusBasis::distance};
       c.parameters.weights = subset(1 + 4 + 8 + 64);
       c.cameras = kTwoCameras;
       c.share_unshaded = 0.3;
@@ -143,7 +143,7 @@ TEST_CASE("Subsampled and unshaded records agree with the oracle, orphans too") 
 TEST_CASE("Orphans far from any source that passes agree with the oracle") {
   Case c = plain_case();
   c.count = 3000;
-  c.parameters.radius.r0 = 0.01;
+  c.parameters.radius = {0.01, filter::RadiusBasis::distance};
   c.parameters.weights = subset(127);
   c.share_unshaded = 0.6;
   check(c, 10);
@@ -153,7 +153,7 @@ TEST_CASE("The disk estimator agrees with the oracle") {
   for (const double r0 : {0.0, 0.05, 0.4}) {
     Case c = plain_case();
     c.parameters.estimator = filter::Estimator::disk;
-    c.parameters.radius.r0 = r0;
+    c.parameters.radius = {r0, filter::RadiusBasis::distance};
     c.share_unshaded = 0.3;
     check(c, 11);
     c.parameters.iterations = 2;

@@ -34,7 +34,7 @@ TEST_CASE("r0 = 0 gives every contribution back, bit for bit") {
     for (const auto estimator : {filter::Estimator::average, filter::Estimator::disk}) {
       for (const std::uint32_t iterations : {1u, 3u}) {
         Parameters parameters;
-        parameters.radius.r0 = 0;
+        parameters.radius = {0, filter::RadiusBasis::distance};
         parameters.demodulate = demodulate;
         parameters.estimator = estimator;
         parameters.iterations = iterations;
@@ -58,7 +58,7 @@ TEST_CASE("Constant c gives c_bar = c exactly, unshaded records and orphans too"
     set.contribution[i] = set.flags[i] == 3 ? c : Rgb(99);
   for (const double r0 : {0.0, 0.01, 0.2, 5.0}) {
     Parameters parameters;
-    parameters.radius.r0 = r0;
+    parameters.radius = {r0, filter::RadiusBasis::distance};
     parameters.iterations = 2;
     const Average result = run(set, parameters);
     for (std::size_t i = 0; i < set.size(); ++i) {
@@ -88,7 +88,7 @@ TEST_CASE("A ball that holds the block, without weights, gives the block's mean"
 TEST_CASE("The same bytes for any number of threads") {
   const RecordSet set = tests::random_records(5000, 4, 0.3, kCamera);
   Parameters parameters;
-  parameters.radius.r0 = 0.1;
+  parameters.radius = {0.1, filter::RadiusBasis::distance};
   parameters.iterations = 2;
   parameters.demodulate = true;
   parameters.count_refusals = true;
@@ -124,7 +124,7 @@ RecordSet two_sheets(const Vec3& normal_a, const Vec3& normal_b, const Vec3& u, 
 TEST_CASE("With default weights nothing crosses a thin wall") {
   const RecordSet set = two_sheets({0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {1, 0, 0}, {0, -1e-4f, 0});
   Parameters parameters;
-  parameters.radius.r0 = 0.3;
+  parameters.radius = {0.3, filter::RadiusBasis::distance};
   parameters.iterations = 3;
   const Average result = run(set, parameters);
   for (std::size_t i = 0; i < set.size(); ++i) REQUIRE(result.c_bar[i] == set.contribution[i]);
@@ -137,7 +137,7 @@ TEST_CASE("With default weights nothing crosses a thin wall") {
 TEST_CASE("With default weights nothing crosses a 90 degree edge") {
   const RecordSet set = two_sheets({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, {0, 1, 0}, {0, 0, 0});
   Parameters parameters;
-  parameters.radius.r0 = 0.3;
+  parameters.radius = {0.3, filter::RadiusBasis::distance};
   const Average result = run(set, parameters);
   for (std::size_t i = 0; i < set.size(); ++i) REQUIRE(result.c_bar[i] == set.contribution[i]);
   parameters.weights = filter::WeightTerms::none();
@@ -151,7 +151,7 @@ TEST_CASE("Demodulated, a texture stays sharp under a constant light") {
     set.contribution[i] = set.reflectance[i] * 3.0f;
   }
   Parameters parameters;
-  parameters.radius.r0 = 1;
+  parameters.radius = {1, filter::RadiusBasis::distance};
   parameters.weights = filter::WeightTerms::none();
   parameters.demodulate = true;
   const Average result = run(set, parameters);

@@ -39,7 +39,7 @@ const std::vector<Damage>& damages() {
 
 Parameters all_terms() {
   Parameters parameters;
-  parameters.radius.r0 = 0.3;
+  parameters.radius = {0.3, filter::RadiusBasis::distance};
   parameters.weights = {0.5f, 0.2f, false, 0.9f, 0.9f, 0.1f, false};
   return parameters;
 }

@@ -59,7 +59,7 @@ TEST_CASE("Each term more can only shrink the set of every record") {
   const tests::RecordSet set = tests::random_records(400, 2, 0, kCamera);
   const filter::Block block{0, 1, 1, kCamera};
   filter::Parameters parameters;
-  parameters.radius.r0 = 0.3;
+  parameters.radius = {0.3, filter::RadiusBasis::distance};
   std::vector<float> radius;
   filter::radii(parameters.radius, set.view(), block, radius);
   const filter::WeightTerms all{0.93f, 0.05f, true, 0.3f, 0.4f, 0.93f, true};

@@ -21,7 +21,7 @@ inline const std::vector<filter::CameraView> kTwo = {{16, 8, 0.05}, {8, 9, 0.1}}
 
 inline FilterRun default_run(const std::string& block = "1pass") {
   FilterRun run;
-  run.parameters.radius.r0 = 0.25;
+  run.parameters.radius = {0.25, filter::RadiusBasis::distance};
   run.parameters.block = filter::parse_block(block);
   return run;
 }

@@ -59,7 +59,7 @@ TEST_CASE("r0 = 0 gives the unfiltered picture bit for bit, demodulated too") {
   set.contribution[5].x = std::numeric_limits<float>::quiet_NaN();
   tests::write_dump(folder / "a.pvb", set, {kTwo, {400, 400}, {}});
   FilterRun run = default_run("all");
-  run.parameters.radius.r0 = 0;
+  run.parameters.radius = {0, filter::RadiusBasis::distance};
   for (const bool demodulate : {false, true}) {
     run.parameters.demodulate = demodulate;
     for (const film::Image& image : filtered(folder / "a.pvb", run)) {

@@ -224,7 +224,7 @@ void add_filter(CLI::App& app) {
       ->required()
       ->type_name("FILE")
       ->allow_extra_args(false);
-  command->add_option("--r0", options.r0, "radius: 0.02 of the distance, 8px, 0.5wu (default 0.02)")
+  command->add_option("--r0", options.r0, "radius: 8px, 0.02 of the distance, 0.5wu (default 8px)")
       ->type_name("R");
   command
       ->add_option("--delta", options.delta,
