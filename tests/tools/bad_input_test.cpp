@@ -41,14 +41,10 @@ class Workplace {
     write("degenerate.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\n");
     write("scene.xyz", "");
     write("text.pvb", "this is no dump");
-    const std::string size = " --size 16x16 --passes 2 --quiet -o ";
-    REQUIRE(run("psf-render " + samples() + "cornell.json" + size + (folder_ / "good.pvb")).code ==
-            0);
+    render("good.pvb", "");
     fs::copy_file(folder_ / "good.pvb", folder_ / "cut.pvb");
     fs::resize_file(folder_ / "cut.pvb", fs::file_size(folder_ / "good.pvb") / 3);
-    REQUIRE(run("psf-render " + samples() + "cornell.json" + size + (folder_ / "lacking.pvb") +
-                " --channels normal,reflectance")
-                .code == 0);
+    render("lacking.pvb", "--channels normal,reflectance");
   }
   [[nodiscard]] std::vector<std::string> files() const {
     std::vector<std::string> names;
@@ -73,6 +69,11 @@ class Workplace {
     return "{\"materials\": [{\"name\": \"m\", \"kind\": \"diffuse\", " + material +
            "}], \"shapes\": [{\"shape\": \"sphere\", \"center\": " + center +
            ", \"radius\": 1, \"material\": \"m\"}]}";
+  }
+  void render(const std::string& name, const std::string& options) {
+    const std::string command = "psf-render SAMPLES/cornell.json --size 16x16 --passes 2 --quiet ";
+    const Outcome outcome = make({command + "-o FOLDER/" + name + " " + options, 0, ""});
+    REQUIRE(outcome.code == 0);
   }
   void write(const std::string& name, const std::string& text) {
     std::ofstream(folder_ / name) << text;
