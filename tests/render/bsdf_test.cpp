@@ -87,7 +87,7 @@ TEST_CASE("Samples of every material follow the density, and its lost part is wh
       double energy_sum = 0, energy_sum_sq = 0;
       for (int k = 0; k < kSamples; ++k) {
         BsdfSample s;
-        const Vec2 u(uniform(generator), uniform(generator));
+        const Vec2 u{uniform(generator), uniform(generator)};  // braces: in this order everywhere
         if (!bsdf.sample(o, u, uniform(generator), s) || s.direction.z <= 0) {
           ++found.back();
           continue;
@@ -104,7 +104,7 @@ TEST_CASE("Samples of every material follow the density, and its lost part is wh
         for (int p = 0; p < kPhi; ++p) {
           const Integral part =
               integrate(bsdf, o, z / double{kZ}, (z + 1) / double{kZ}, 2 * kPiD * p / kPhi - kPiD,
-                        2 * kPiD * (p + 1) / kPhi - kPiD, 40);
+                        2 * kPiD * (p + 1) / kPhi - kPiD, 80);
           expected[static_cast<std::size_t>(z * kPhi + p)] = part.pdf * kSamples;
           total.pdf += part.pdf;
           total.energy += part.energy;
