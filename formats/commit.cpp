@@ -95,7 +95,7 @@ Commit decode_commit(const Frame& frame) {
 std::vector<std::byte> read_section(const File& file, const Frame& frame, const Section& section) {
   std::vector<std::byte> bytes(static_cast<std::size_t>(section.length));
   file.read_at(frame.prefix.offset + section.offset, bytes);
-  if (crc32(bytes) != section.crc) refuse("the checksum of a section of it is wrong");
+  if (!crc_matches(crc32(bytes), section.crc)) refuse("the checksum of a section of it is wrong");
   return bytes;
 }
 

@@ -81,7 +81,8 @@ FrameResult read_frame(const File& file, std::uint64_t file_size, std::uint64_t 
   if (here < directory_length) {
     file.read_at(offset + kPrefix + here, std::span(directory).subspan(here));
   }
-  if (crc32(crc32(std::span<const std::byte>(page).first(kChecked)), directory) != expected) {
+  const std::uint32_t front = crc32(std::span<const std::byte>(page).first(kChecked));
+  if (!crc_matches(crc32(front, directory), expected)) {
     return not_whole(FrameState::bad, "checksum of the frame's first bytes and directory is wrong");
   }
   if (prefix.length > available) {

@@ -26,7 +26,9 @@ std::optional<SlotRecord> decode_slot_record(std::span<const std::byte> bytes) {
   record.length = in.get<std::uint64_t>();
   record.sequence = in.get<std::uint64_t>();
   in.skip(4);
-  if (in.get<std::uint32_t>() != crc32(bytes.first(kSlotRecord - 4))) return std::nullopt;
+  if (!crc_matches(crc32(bytes.first(kSlotRecord - 4)), in.get<std::uint32_t>())) {
+    return std::nullopt;
+  }
   return record;
 }
 
