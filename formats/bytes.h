@@ -52,6 +52,7 @@ class ByteReader {
     rest_ = rest_.subspan(count);
     return front;
   }
+  [[nodiscard]] std::span<const std::byte> rest() const { return rest_; }
   void skip(std::size_t count) { static_cast<void>(get_bytes(count)); }
 
  private:

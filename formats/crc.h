@@ -13,8 +13,8 @@ namespace psf::formats {
   return crc32(0, bytes);
 }
 
-// Whether what was computed is what the file says. The one place where checksums are tested: a build
-// for fuzzing (PSF_FUZZ_WITHOUT_CHECKSUMS) takes every one for right, to get behind them.
+// Whether what was computed is what the file says. The one place where checksums are tested: a
+// build for fuzzing (PSF_FUZZ_WITHOUT_CHECKSUMS) takes every one for right, to get behind them.
 [[nodiscard]] constexpr bool crc_matches([[maybe_unused]] std::uint32_t computed,
                                          [[maybe_unused]] std::uint32_t stored) {
 #ifdef PSF_FUZZ_WITHOUT_CHECKSUMS

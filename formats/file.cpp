@@ -9,9 +9,11 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -19,6 +21,8 @@
 
 namespace psf::formats {
 namespace {
+
+constexpr int kLockAttempts = 10;
 
 const char* remedy(int error) {
   switch (error) {
@@ -58,27 +62,66 @@ File File::open(const std::string& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) throw_errno(path, "open");
   File file(path, descriptor);
-  struct stat status {};
-  if (::fstat(descriptor, &status) != 0) file.fail("open");
-  if (!S_ISREG(status.st_mode)) {
-    throw Error(ErrorCode::io,
-                fmt::format("{}: not a regular file; give the name of a .pvb file", path));
-  }
+  file.check_regular();
   return file;
 }
 
 File File::create(const std::string& path) {
   // Emptied only once it is locked: another process may be writing it.
-  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-  if (descriptor < 0) throw_errno(path, "create");
-  File file(path, descriptor);
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
-    throw Error(
-        ErrorCode::io,
-        fmt::format("{}: another process is writing it; wait for it or choose another name", path));
-  }
+  File file = open_locked(path, O_CREAT | O_NOFOLLOW, "create");
   file.truncate(0);
   return file;
+}
+
+File File::update(const std::string& path) {
+  File file = open_locked(path, O_NONBLOCK, "open");
+  file.check_regular();
+  return file;
+}
+
+File File::open_locked(const std::string& path, int flags, const char* action) {
+  for (int attempt = 0;;) {
+    const int descriptor = ::open(path.c_str(), O_RDWR | O_CLOEXEC | flags, 0666);
+    if (descriptor < 0) throw_errno(path, action);
+    File file(path, descriptor);
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
+      // Its writer may have given it another name before we had the lock.
+      if (file.is_named()) return file;
+      continue;
+    }
+    // is_being_written() of some other process holds the lock for a moment.
+    if (++attempt == kLockAttempts) {
+      throw Error(ErrorCode::io,
+                  fmt::format("{}: another process is writing it; wait for it or choose another "
+                              "name",
+                              path));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+bool File::is_being_written(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return false;
+  const File file(path, descriptor);
+  return ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+}
+
+void File::check_regular() const {
+  struct stat status {};
+  if (::fstat(descriptor_, &status) != 0) fail("open");
+  if (!S_ISREG(status.st_mode)) {
+    throw Error(ErrorCode::io,
+                fmt::format("{}: not a regular file; give the name of a .pvb file", path_));
+  }
+}
+
+bool File::is_named() const {
+  struct stat named {};
+  struct stat own {};
+  if (::fstat(descriptor_, &own) != 0) fail("read");
+  return ::stat(path_.c_str(), &named) == 0 && named.st_dev == own.st_dev &&
+         named.st_ino == own.st_ino;
 }
 
 File::File(File&& other) noexcept

@@ -12,8 +12,12 @@ class File {
  public:
   // For reading; only regular files.
   [[nodiscard]] static File open(const std::string& path);
-  // For writing, emptied. Refused where another process is writing it. The lock ends with the File.
+  // For writing, emptied; for writing, as it is. Refused where another process is writing it. The
+  // lock ends with the File.
   [[nodiscard]] static File create(const std::string& path);
+  [[nodiscard]] static File update(const std::string& path);
+  // Whether a process holds the lock of the file `path`; false where there is none.
+  [[nodiscard]] static bool is_being_written(const std::string& path);
 
   File(File&& other) noexcept;
   File& operator=(File&& other) noexcept;
@@ -22,6 +26,8 @@ class File {
   [[nodiscard]] const std::string& path() const { return path_; }
   void set_path(const std::string& path) { path_ = path; }  // for messages, after a rename
   [[nodiscard]] std::uint64_t size() const;
+  // Whether path() is still the name of this file, and not of another or of none.
+  [[nodiscard]] bool is_named() const;
 
   // Fills `out`; a file that ends before is an error. Thread-safe.
   void read_at(std::uint64_t offset, std::span<std::byte> out) const;
@@ -34,6 +40,8 @@ class File {
  private:
   File(std::string path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
   [[noreturn]] void fail(const char* action) const;
+  [[nodiscard]] static File open_locked(const std::string& path, int flags, const char* action);
+  void check_regular() const;
 
   std::string path_;
   int descriptor_ = -1;

@@ -25,6 +25,14 @@ void add_padded(std::vector<std::span<const std::byte>>& parts, std::span<const 
 
 }  // namespace
 
+FrameWriter::FrameWriter(File file, const Frame& head, const Prefix& last)
+    : file_(std::move(file)),
+      uuid_(head.prefix.uuid),
+      head_front_(encode_front(head.prefix, head.directory)),
+      slot_(head.end()),
+      end_(last.offset + last.length),
+      sequence_(last.sequence + 1) {}
+
 void FrameWriter::write_start(const Head& head) {
   const std::vector<std::byte> directory = encode_head(head);
   head_front_ =

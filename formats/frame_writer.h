@@ -19,7 +19,10 @@ namespace psf::formats {
 // frame.
 class FrameWriter {
  public:
+  // Of a new file, which write_start() begins.
   FrameWriter(File file, const Uuid& uuid) : file_(std::move(file)), uuid_(uuid) {}
+  // Goes on behind the frame `last` of a file that begins with the frame `head`.
+  FrameWriter(File file, const Frame& head, const Prefix& last);
 
   // HEAD and an empty SLOT.
   void write_start(const Head& head);

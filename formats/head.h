@@ -47,6 +47,10 @@ struct Head {
   std::uint32_t chunk_capacity = 65536;  // most records a chunk, 1 to 2^24
   std::vector<Channel> channels;         // 1 to 256, unique names
   std::string metadata = "{}";           // a JSON object, UTF-8, at most 1 MiB; see metadata.h
+  // What a later minor version put into HEAD's 40 reserved bytes and behind the metadata: of no
+  // meaning here, and kept when copying.
+  std::array<std::byte, 40> later_fields{};
+  std::vector<std::byte> later_bytes;
 
   [[nodiscard]] std::optional<std::size_t> find(std::string_view channel) const;
   [[nodiscard]] std::size_t stride() const;  // stored bytes a record, all channels

@@ -46,7 +46,7 @@ std::vector<std::byte> encode_head(const Head& head) {
   out.put(head.chunk_capacity);
   out.put(static_cast<std::uint32_t>(head.channels.size()));
   out.put(static_cast<std::uint32_t>(head.metadata.size()));
-  out.put_zeros(kHeadFixed - out.bytes().size());
+  out.put_bytes(head.later_fields);
   for (const Channel& channel : head.channels) {
     out.put_bytes(std::as_bytes(std::span(channel.name)));
     out.put_zeros(kChannelName - channel.name.size());
@@ -56,6 +56,7 @@ std::vector<std::byte> encode_head(const Head& head) {
     out.put_zeros(kChannelEntry - kChannelName - 3);
   }
   out.put_bytes(std::as_bytes(std::span(head.metadata)));
+  out.put_bytes(head.later_bytes);
   return out.take();
 }
 
@@ -80,10 +81,12 @@ Head decode_head(std::span<const std::byte> directory) {
                 fmt::format("HEAD: {} channels (at most {}), {} bytes of metadata (at most {})",
                             channels, kMaxChannels, metadata, kMaxMetadata));
   }
-  in.skip(kHeadFixed - 24);
+  std::ranges::copy(in.get_bytes(head.later_fields.size()), head.later_fields.begin());
   for (std::size_t k = 0; k < channels; ++k) head.channels.push_back(decode_channel(in));
   const std::span<const std::byte> text = in.get_bytes(metadata);
   head.metadata.assign(reinterpret_cast<const char*>(text.data()), text.size());
+  const std::span<const std::byte> rest = in.rest();
+  head.later_bytes.assign(rest.begin(), rest.end());
   validate(head);
   return head;
 }

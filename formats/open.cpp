@@ -40,6 +40,7 @@ class Opening {
     head_end_ = head.frame.end();
     out_.head = std::move(head.head);
     out_.uuid = head.frame.prefix.uuid;
+    out_.head_frame = std::move(head.frame);
     find_last_commit();
     out_.commit = last_->commit;
     out_.last = std::move(last_->frame);
@@ -140,7 +141,11 @@ class Opening {
         if (error.code() == ErrorCode::io) throw;
         return false;
       }
-      if (at.commit.first_chunk == 0) break;
+      if (at.commit.first_chunk == 0) {
+        out_.root = at.frame.prefix.offset;
+        out_.root_chunks = at.commit.chunks;
+        break;
+      }
       auto base = commit_at(at.commit.base);
       if (!base || base->commit.chunks != at.commit.first_chunk) return false;
       at = std::move(*base);
@@ -191,6 +196,7 @@ class Opening {
     };
     hop(head_end_, take);
     out_.chunks.clear();
+    out_.root = out_.root_chunks = 0;
     std::uint64_t next = 0;
     std::string missing;
     for (const auto& [first, entry] : by_record) {

@@ -14,11 +14,15 @@ namespace psf::formats {
 
 struct Opened {
   Head head;
+  Frame head_frame;
   Uuid uuid{};
   std::uint64_t file_size = 0;  // when it was opened
   Frame last;                   // the last commit
   Commit commit;
   std::vector<ChunkEntry> chunks;
+  // The commit whose index begins with the first chunk and that the last one builds on: its offset,
+  // and the chunks up to it. 0, 0 where a commit in between is unreadable.
+  std::uint64_t root = 0, root_chunks = 0;
 };
 
 struct HeadFrame {

@@ -140,6 +140,17 @@ Reader::~Reader() = default;
 Reader::Reader(Reader&&) noexcept = default;
 Reader& Reader::operator=(Reader&&) noexcept = default;
 
+bool Reader::refresh() {
+  State& state = *state_;
+  if (!state.file.is_named()) state.fail("was replaced by another file while it was being read");
+  if (state.file.size() <= state.opened.last.end()) return false;
+  Opened now = open_buffer(state.file);
+  const bool more = now.commit.number > state.opened.commit.number;
+  state.opened = std::move(now);
+  if (more) state.passes = passes_of(state.opened.chunks);
+  return more;
+}
+
 const std::string& Reader::path() const {
   return state_->file.path();
 }

@@ -59,6 +59,11 @@ class Reader {
       const;                               // after the last commit: normal after a kill
   [[nodiscard]] std::string uuid() const;  // of the file, as text
 
+  // Takes in what was committed since: true where there is more. Not while other threads use the
+  // reader. Throws what the constructor throws, and Error{bad_input} where another file now has the
+  // name.
+  bool refresh();
+
   [[nodiscard]] std::uint64_t file_bytes() const;
   // What the producer handed to its last commit.
   [[nodiscard]] std::vector<std::byte> resume_state() const;

@@ -20,7 +20,7 @@ struct RecoverReport {
   std::uint64_t records_lost = 0;       // that commits counted
   std::uint64_t records_unknown = 0;    // at least: of commits that cannot be read but were there
   std::uint64_t uncommitted_bytes = 0;  // left behind: normal after a kill
-  std::string head_from;  // where HEAD came from when it could not be read; empty: it could
+  std::string head_from;      // where HEAD came from when it could not be read; empty: it could
   std::vector<Fault> faults;  // what is wrong with the input, as check() has it, by offset
   std::vector<Fault> losses;  // records that are not in the output, by record
 

@@ -28,24 +28,36 @@ struct WriterOptions {
 class Writer {
  public:
   Writer(const std::string& path, const Head& head, const WriterOptions& options = {});
+  // Goes on behind the last commit of a file, closed or not; what follows that commit is cut off
+  // before the first write. Throws Error{io} where another process is writing it, Error{bad_input}
+  // where it cannot be read, has other channels or another `scene_hash` than `head`; then the file
+  // is as it was. Metadata and chunk capacity stay those of the file.
+  [[nodiscard]] static Writer resume(const std::string& path, const Head& head,
+                                     const WriterOptions& options = {});
   ~Writer();
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
+  Writer(Writer&&) noexcept;
+  Writer& operator=(Writer&&) noexcept;
 
   // Appends `count` records to the current pass. columns[k] points at (count, components) values of
   // channel k of the head, contiguous, as stored (native byte order).
   void append(std::size_t count, std::span<const void* const> columns);
   // Ends the current pass. `resume_state`: at most 64 KiB that the producer wants back on resume.
   void commit(std::span<const std::byte> resume_state = {});
-  // Writes the last commit again with the flag "closed". Records appended since the last commit()
-  // are an error.
+  // Writes the last commit again with the flag "closed", unless it has it. Records appended since
+  // the last commit() are an error.
   void close();
 
+  [[nodiscard]] const std::string& path() const;
+  [[nodiscard]] const Head& head() const;       // of the file
   [[nodiscard]] std::uint64_t records() const;  // committed
+  [[nodiscard]] std::uint64_t passes() const;   // committed
+  // What the last commit was given.
+  [[nodiscard]] std::span<const std::byte> resume_state() const;
   [[nodiscard]] std::uint64_t bytes_written() const;
 
  private:
   struct State;
+  explicit Writer(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 

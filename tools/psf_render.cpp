@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/interrupt.h"
 #include "core/output_file.h"
@@ -90,6 +91,21 @@ std::string format_bytes(double bytes) {
   return fmt::format("{:.1f} kB", bytes / 1e3);
 }
 
+// With --resume a file that is there goes on; one that is not is begun.
+formats::Writer open_writer(const RenderOptions& options, const formats::Head& head) {
+  formats::WriterOptions writer_options;
+  writer_options.codec = options.codec;
+  if (!options.resume || !std::filesystem::exists(options.output)) {
+    return {options.output, head, writer_options};
+  }
+  formats::Writer writer = formats::Writer::resume(options.output, head, writer_options);
+  if (!options.common.quiet) {
+    fmt::print(stderr, "note: {} has {} of {} passes\n", options.output, writer.passes(),
+               options.settings.passes);
+  }
+  return writer;
+}
+
 void run(RenderOptions& options) {
   const core::ThreadLimit threads(options.common.threads);
   check_outputs(options);
@@ -104,18 +120,17 @@ void run(RenderOptions& options) {
   settings.cameras = select_cameras(scene, options.cameras);
   settings.validate(scene);
   const auto integrator = render::make_integrator(scene, settings.integrator);
-  std::unique_ptr<formats::Writer> writer;
+  settings.replay = !options.images.empty();
+  std::optional<formats::Writer> writer;
   if (!options.output.empty()) {
-    formats::WriterOptions writer_options;
-    writer_options.codec = options.codec;
-    writer = std::make_unique<formats::Writer>(
-        options.output, render::make_head(scene, *integrator, settings), writer_options);
+    writer.emplace(open_writer(options, render::make_head(scene, *integrator, settings)));
   }
   const double prepared =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   core::throw_if_interrupted("nothing was rendered, nothing is written");
 
-  const render::RenderResult result = render::render(scene, *integrator, settings, writer.get());
+  const render::RenderResult result =
+      render::render(scene, *integrator, settings, writer ? &*writer : nullptr);
 
   const auto cameras = render::chosen_cameras(scene, settings);
   std::vector<std::string> images;
@@ -163,9 +178,10 @@ void run(RenderOptions& options) {
   }
   if (result.interrupted) {
     const std::string kept = writer ? options.output + " keeps" : "the pictures keep";
-    throw Error(ErrorCode::interrupted,
-                fmt::format("interrupted after pass {} of {}: {} all {} paths of them",
-                            result.passes, settings.passes, kept, result.paths));
+    throw Error(
+        ErrorCode::interrupted,
+        fmt::format("interrupted after pass {} of {}: {} all {} paths of them{}", result.passes,
+                    settings.passes, kept, result.paths, writer ? "; --resume goes on" : ""));
   }
 }
 

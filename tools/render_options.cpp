@@ -92,6 +92,10 @@ void add_outputs(CLI::App& app, RenderOptions& o) {
   app.add_option("-o,--output", o.output, "path-vertex buffer to write")
       ->type_name("OUT.pvb")
       ->group(kGroup);
+  app.add_flag("--resume", o.resume,
+               "go on with OUT.pvb where it ends, after ^C, a kill, a time limit or to add passes; "
+               "begin it where it is not there")
+      ->group(kGroup);
   app.add_option("--image", o.images,
                  "unfiltered picture, .exr or .png; may be given again; with several cameras each "
                  "adds its name")
@@ -209,6 +213,9 @@ void add_render_options(CLI::App& app, RenderOptions& options) {
 void check_outputs(const RenderOptions& options) {
   if (options.output.empty() && options.images.empty()) {
     throw Error(ErrorCode::usage, "nothing to write: give -o OUT.pvb, --image FILE or both");
+  }
+  if (options.resume && options.output.empty()) {
+    throw Error(ErrorCode::usage, "--resume needs the file to go on with: give -o OUT.pvb");
   }
   if (!options.output.empty()) {
     if (std::filesystem::path(options.output).extension() != ".pvb") {

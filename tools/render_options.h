@@ -16,6 +16,7 @@ struct RenderOptions {
   std::string output;                // .pvb; empty: none
   std::vector<std::string> images;   // .exr or .png of the unfiltered picture
   std::vector<std::string> cameras;  // names; empty: the first; "all"
+  bool resume = false;
   formats::Codec codec = formats::Codec::zstd;
   render::SceneOverrides overrides;
   render::RenderSettings settings;  // its cameras are set once the scene is loaded

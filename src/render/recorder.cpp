@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "formats/error.h"
+#include "formats/reader.h"
 
 namespace psf::render {
 namespace {
@@ -115,6 +116,16 @@ std::vector<const void*> Recorder::columns(std::span<const formats::Channel> cha
     }
   }
   return result;
+}
+
+void Recorder::load(const formats::Reader& reader, std::uint64_t first, std::size_t count) {
+  for (const auto& row : ColumnTable::rows()) {
+    if (!row.always) continue;
+    // The column is this object's own, which is not const here.
+    auto* column = static_cast<std::byte*>(const_cast<void*>(row.data(*this)));
+    reader.read(reader.require(row.channel.name, "the picture"), first, count,
+                {column, count * row.channel.stride()});
+  }
 }
 
 std::uint64_t Recorder::add_to(film::Film& film, std::size_t count,

@@ -9,6 +9,7 @@
 
 #include "film/film.h"
 #include "formats/head.h"
+#include "formats/reader.h"
 #include "render/integrator.h"
 
 namespace psf::render {
@@ -32,6 +33,10 @@ class Recorder {
   // For each channel its first value, as formats::Writer::append wants it. `channels`: of
   // record_channels(). Valid while the recorder lives.
   [[nodiscard]] std::vector<const void*> columns(std::span<const formats::Channel> channels) const;
+
+  // Sets the first `count` slots, as far as add_to() needs them, to records of a dump that has
+  // record_channels(), from `first` on. Throws what the reader throws.
+  void load(const formats::Reader& reader, std::uint64_t first, std::size_t count);
 
   // Adds u + alpha * c * shade_rate of the first `count` records, in order; where one path in
   // shade_rate is shaded the factor keeps the mean. Non-finite values are left out; returns how

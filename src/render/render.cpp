@@ -10,13 +10,14 @@
 #include <cmath>
 #include <future>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "core/interrupt.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "formats/reader.h"
 #include "render/camera.h"
 #include "render/recorder.h"
+#include "render/resume.h"
 #include "render/shade_rate.h"
 
 namespace psf::render {
@@ -47,6 +48,7 @@ class Loop {
         writer_(writer),
         shade_rate_(settings.shade_rate),
         channels_(record_channels(settings.channels)) {
+    result_.films.reserve(settings.cameras.size());
     std::size_t largest = 0;
     for (const std::size_t index : settings.cameras) {
       const Camera& camera = scene.cameras[index];
@@ -58,16 +60,19 @@ class Loop {
     for (auto& slab : slabs_) slab = std::make_unique<Recorder>(std::min(kSlab, largest));
   }
 
+  // Takes up what a resumed file holds.
+  void resume(const formats::Head& head);
   RenderResult run();
 
  private:
+  void replay();
   void trace_pass(std::uint64_t pass);
   void trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t first, std::size_t count);
   void trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path, Recorder& recorder,
                   std::size_t slot, std::uint64_t& rays) const;
   void emit(std::uint64_t pass, std::uint16_t camera, std::size_t count);
   void wait_for_output();
-  [[nodiscard]] std::string resume_state(std::uint64_t next_pass) const;
+  [[nodiscard]] Done done_now() const;
 
   const Integrator& integrator_;
   const RenderSettings& settings_;
@@ -78,6 +83,7 @@ class Loop {
   std::uint64_t paths_a_pass_ = 0;
   std::uint64_t paths_done_ = 0;
   std::atomic<std::uint64_t> rays_{0};
+  double seconds_before_ = 0;  // of the runs before this one
   Clock::time_point start_ = Clock::now();
   core::Progress* progress_ = nullptr;
   RenderResult result_;
@@ -87,6 +93,39 @@ class Loop {
   std::size_t current_ = 0;
   std::future<void> output_;
 };
+
+void Loop::resume(const formats::Head& head) {
+  const Done done = resume_point(*writer_, head, settings_, paths_a_pass_);
+  if (settings_.replay) replay();
+  result_.passes = done.passes;
+  result_.non_finite = done.non_finite;
+  paths_done_ = done.passes * paths_a_pass_;
+  rays_ = done.rays;
+  seconds_before_ = done.seconds;
+  start_ = Clock::now();
+}
+
+// Adds what is committed to the films as if it had just been traced.
+void Loop::replay() {
+  const formats::Reader reader(writer_->path());
+  core::Progress progress("read back", reader.records(), settings_.quiet);
+  Recorder& recorder = *slabs_[0];
+  std::uint64_t path = 0;
+  while (path < reader.records()) {
+    for (std::size_t camera = 0; camera < views_.size(); ++camera) {
+      const std::size_t pixels = views_[camera].pixels();
+      for (std::size_t first = 0; first < pixels; first += kSlab) {
+        const std::size_t count = std::min(kSlab, pixels - first);
+        core::throw_if_interrupted("nothing was added to the file");
+        recorder.load(reader, path, count);
+        (void)recorder.add_to(result_.films[camera], count, settings_.shade_rate);
+        path += count;
+        progress.advance(path);
+      }
+    }
+  }
+  progress.finish();
+}
 
 RenderResult Loop::run() {
   core::Progress progress("render", settings_.passes * paths_a_pass_, settings_.quiet);
@@ -102,7 +141,7 @@ RenderResult Loop::run() {
   if (writer_ != nullptr && !result_.interrupted) writer_->close();
   result_.paths = paths_done_;
   result_.rays = rays_;
-  result_.seconds = seconds_since(start_);
+  result_.seconds = seconds_before_ + seconds_since(start_);
   return std::move(result_);
 }
 
@@ -132,7 +171,8 @@ void Loop::trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t firs
       rays_ += rays;
     });
     paths_done_ += size;
-    const double rate = static_cast<double>(rays_) / std::max(1e-9, seconds_since(start_));
+    const double rate =
+        static_cast<double>(rays_) / std::max(1e-9, seconds_before_ + seconds_since(start_));
     progress_->advance(paths_done_,
                        fmt::format("{:.2f} M rays/s{}", rate / 1e6,
                                    core::interrupted() ? ", ending after this pass" : ""));
@@ -166,15 +206,17 @@ void Loop::trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path
 
 void Loop::emit(std::uint64_t pass, std::uint16_t camera, std::size_t count) {
   wait_for_output();
-  const Recorder& recorder = *slabs_[current_];
+  Recorder& recorder = *slabs_[current_];
   current_ ^= 1;
   const bool ends_pass = paths_done_ == (pass + 1) * paths_a_pass_;
-  auto work = [this, &recorder, camera, count,
-               state = ends_pass ? resume_state(pass + 1) : std::string()] {
+  auto work = [this, &recorder, camera, count, ends_pass, done = done_now()]() mutable {
     result_.non_finite += recorder.add_to(result_.films[camera], count, settings_.shade_rate);
     if (writer_ == nullptr) return;
     writer_->append(count, recorder.columns(channels_));
-    if (!state.empty()) writer_->commit(std::as_bytes(std::span(state)));
+    if (!ends_pass) return;
+    done.non_finite = result_.non_finite;
+    const std::string state = resume_state(done, settings_);
+    writer_->commit(std::as_bytes(std::span(state)));
   };
   if (core::thread_count() > 1) {
     output_ = std::async(std::launch::async, std::move(work));
@@ -192,18 +234,9 @@ void Loop::wait_for_output() {
   result_.output_seconds += seconds_since(start);
 }
 
-// What a renderer needs to go on after this commit and to see that it is asked for the same
-// picture.
-std::string Loop::resume_state(std::uint64_t next_pass) const {
-  const IntegratorSettings& integrator = settings_.integrator;
-  nlohmann::json state{{"next_pass", next_pass},
-                       {"rays", rays_.load()},
-                       {"seconds", seconds_since(start_)},
-                       {"shade_rate", settings_.shade_rate},
-                       {"max_depth", integrator.max_depth},
-                       {"roulette_depth", integrator.roulette_depth}};
-  if (std::isfinite(integrator.ao_distance)) state["ao_distance"] = integrator.ao_distance;
-  return state.dump();
+// Of the paths traced so far; the caller fills in what the output alone knows.
+Done Loop::done_now() const {
+  return {paths_done_ / paths_a_pass_, rays_, 0, seconds_before_ + seconds_since(start_)};
 }
 
 }  // namespace
@@ -213,7 +246,11 @@ RenderResult render(const Scene& scene, const Integrator& integrator,
   settings.validate(scene);
   RenderSettings complete = settings;
   complete.cameras = chosen_cameras(scene, settings);
-  return Loop(scene, integrator, complete, writer).run();
+  Loop loop(scene, integrator, complete, writer);
+  if (writer != nullptr && writer->passes() > 0) {
+    loop.resume(make_head(scene, integrator, settings));
+  }
+  return loop.run();
 }
 
 }  // namespace psf::render

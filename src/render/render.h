@@ -23,6 +23,7 @@ struct RenderSettings {
   std::uint32_t shade_rate = 1;       // one path in so many is shaded, 1 to 65536
   std::vector<std::string> channels;  // optional channels to write; empty: all
   double time_limit = std::numeric_limits<double>::infinity();  // seconds; ends after the pass
+  bool replay = true;  // of a resumed file: read its passes back into the films
   std::string producer = "psf-render";
   bool quiet = false;
 
@@ -32,8 +33,8 @@ struct RenderSettings {
 
 struct RenderResult {
   std::vector<film::Film> films;  // one a chosen camera: the unfiltered pictures
-  std::uint64_t passes = 0;       // done, all of them committed
-  std::uint64_t paths = 0, rays = 0;
+  // With those of the runs before, where a file was resumed; passes are all committed.
+  std::uint64_t passes = 0, paths = 0, rays = 0;
   std::uint64_t non_finite = 0;  // paths left out of the pictures
   double seconds = 0;            // all of the loop
   double output_seconds = 0;     // of it, waiting for compression and writing
@@ -53,8 +54,10 @@ struct RenderResult {
 //   global  its number in the whole file is its index in one sequence, whose first two dimensions
 //           are the image plane.
 // `writer`, of the head above, or null: gets every record in path order, a commit a pass, and is
-// closed unless ^C ended the loop. Compression, writing and summing up overlap the tracing of what
-// comes next. The same bytes for any number of threads.
+// closed unless ^C ended the loop. Where it resumes a file, the loop goes on behind its last pass,
+// with the same records and pictures as if it had never stopped; throws what resume_point() throws.
+// Compression, writing and summing up overlap the tracing of what comes next. The same bytes for
+// any number of threads.
 [[nodiscard]] RenderResult render(const Scene& scene, const Integrator& integrator,
                                   const RenderSettings& settings, formats::Writer* writer);
 

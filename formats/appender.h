@@ -1,0 +1,90 @@
+// A path-vertex buffer that grows: its chunks, its commits, its index and its name. What Writer,
+// recover() and concatenate() write with.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/codec.h"
+#include "formats/frame_writer.h"
+#include "formats/head.h"
+#include "formats/reader.h"
+#include "formats/writer.h"
+
+namespace psf::formats {
+
+class Appender {
+ public:
+  // When a new file gets its name: with the first commit, or by publish().
+  enum class Appear { first_commit, published };
+
+  // A new file with HEAD and SLOT, under `path`.partial until it appears. Throws Error{bad_input}
+  // for a head that breaks the rules, Error{io} where another process is writing under that name.
+  [[nodiscard]] static std::unique_ptr<Appender> create(const std::string& path, const Head& head,
+                                                        const WriterOptions& options,
+                                                        Appear appear);
+  // Goes on behind the last commit of a file; what follows that commit is cut off before the first
+  // write. Throws Error{bad_input} where the file is no such file, has other channels or another
+  // scene hash than `head`, or was written by a later version.
+  [[nodiscard]] static std::unique_ptr<Appender> resume(const std::string& path, const Head& head,
+                                                        const WriterOptions& options);
+
+  Appender(const Appender&) = delete;
+  Appender& operator=(const Appender&) = delete;
+  // Cuts off what is not committed; removes a file that did not appear.
+  ~Appender();
+
+  // To the pass after the last commit.
+  void add_chunk(std::uint32_t count, std::span<const EncodedColumn> columns);
+  // Ends that pass.
+  void commit(std::span<const std::byte> resume_state);
+  // Commits once more as closed. With Appear::published the file stays locked until publish() gives
+  // it its name.
+  void close();
+  void publish();
+
+  [[nodiscard]] const std::string& path() const { return path_; }  // the final one
+  [[nodiscard]] std::string current_path() const;                  // `path`.partial before
+  [[nodiscard]] const Head& head() const { return head_; }         // of the file
+  [[nodiscard]] bool is_open() const { return frames_ && !closed_; }
+  [[nodiscard]] std::uint64_t records() const { return committed_; }
+  [[nodiscard]] std::uint64_t appended() const { return appended_; }
+  [[nodiscard]] std::uint64_t passes() const { return passes_; }
+  [[nodiscard]] std::uint64_t bytes() const { return frames_ ? frames_->end() : bytes_; }
+  [[nodiscard]] std::span<const std::byte> resume_state() const { return resume_; }
+
+ private:
+  // A commit that a later one may build its index on: see README.md, "CMIT".
+  struct Anchor {
+    std::uint64_t offset = 0, chunks = 0;
+  };
+
+  Appender(const std::string& path, const Head& head, bool sync, FrameWriter frames);
+  void cut_tail();
+  void write_commit(std::uint32_t flags);
+  void appear();
+  void finish();
+
+  std::string path_;
+  Head head_;
+  bool sync_ = true;
+  Appear appear_ = Appear::first_commit;
+  bool appeared_ = false, closed_ = false;
+  bool tail_ = false;                  // of a resumed file: still behind its last commit
+  std::uint32_t last_flags_ = 0;       // of the last commit
+  std::optional<FrameWriter> frames_;  // until the file is done with
+
+  std::vector<std::byte> resume_;
+  std::vector<ChunkEntry> index_;  // of all chunks
+  Anchor previous_, leap_;
+  std::uint64_t committed_end_ = 0, bytes_ = 0;
+  std::uint64_t commits_ = 0, passes_ = 0;
+  std::uint64_t appended_ = 0, committed_ = 0;  // records
+};
+
+}  // namespace psf::formats
