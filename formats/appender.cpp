@@ -44,11 +44,6 @@ void check_head(const std::string& path, const Head& head) {
   }
 }
 
-std::string describe(const Channel& channel) {
-  return fmt::format("{} {} x {}{}", channel.name, name_of(channel.type), channel.components,
-                     channel.encoding == Encoding::octahedral ? " octahedral" : "");
-}
-
 void check_same(const std::string& path, const Head& own, const Head& wanted) {
   constexpr const char* kRemedy = "it is unchanged; give another name to write a new file";
   if (own.minor > kMinor || own.optional_features != 0) {
@@ -58,7 +53,7 @@ void check_same(const std::string& path, const Head& own, const Head& wanted) {
   }
   for (std::size_t k = 0; k < std::max(own.channels.size(), wanted.channels.size()); ++k) {
     const auto name = [k](const Head& head) {
-      return k < head.channels.size() ? describe(head.channels[k]) : "nothing";
+      return k < head.channels.size() ? to_text(head.channels[k]) : "nothing";
     };
     if (name(own) == name(wanted)) continue;
     refuse(path, fmt::format("has other channels: as number {} {}, not {}; {}", k, name(own),
@@ -78,7 +73,7 @@ std::unique_ptr<Appender> Appender::create(const std::string& path, const Head& 
                                            const WriterOptions& options, Appear appear) {
   check_target(path);
   check_head(path, head);
-  FrameWriter frames(File::create(path + kPartial), options.uuid ? *options.uuid : make_uuid());
+  FrameWriter frames(File::create(partial_path(path)), options.uuid ? *options.uuid : make_uuid());
   std::unique_ptr<Appender> made(new Appender(path, head, options.sync, std::move(frames)));
   made->appear_ = appear;
   // A file that grows under this name would be lost when ours gets it.
@@ -112,7 +107,9 @@ std::unique_ptr<Appender> Appender::resume(const std::string& path, const Head& 
   FrameWriter frames(std::move(file), opened.head_frame, opened.last.prefix);
   std::unique_ptr<Appender> made(new Appender(path, opened.head, options.sync, std::move(frames)));
   made->appeared_ = true;
-  made->tail_ = opened.file_size > opened.last.end();
+  made->untouched_ = true;
+  const Prefix& last = opened.last.prefix;
+  made->last_record_ = {last.offset, last.length, last.sequence};
   made->resume_ = std::move(state);
   made->index_ = opened.chunks;
   made->previous_ = {opened.last.prefix.offset, opened.chunks.size()};
@@ -133,7 +130,7 @@ Appender::~Appender() {
   try {
     if (!appeared_) {
       std::remove(current_path().c_str());
-    } else if (!tail_) {
+    } else if (!untouched_) {
       frames_->file().truncate(committed_end_);  // what is not committed is of no use to anyone
     }
   } catch (const Error&) {
@@ -141,13 +138,18 @@ Appender::~Appender() {
   }
 }
 
-void Appender::cut_tail() {
-  if (!std::exchange(tail_, false)) return;
+// Of a resumed file, once: cuts off what is not committed. A slot record of a commit that was cut
+// off before would later name what is none.
+void Appender::begin_writing() {
+  if (!untouched_) return;
+  untouched_ = false;
   frames_->file().truncate(committed_end_);
+  frames_->write_slot(commits_, last_record_);
+  frames_->write_slot(commits_ + 1, last_record_);
 }
 
 void Appender::add_chunk(std::uint32_t count, std::span<const EncodedColumn> columns) {
-  cut_tail();
+  begin_writing();
   if (passes_ >= std::numeric_limits<std::uint32_t>::max()) {
     throw Error(ErrorCode::limit, path_ + ": more than 2^32 - 1 passes");
   }
@@ -180,12 +182,15 @@ void Appender::close() {
 }
 
 void Appender::publish() {
+  // Before it has the name, which is then that of a whole file or none; after, nothing may fail.
+  frames_->file().flush();
   appear();
-  finish();
+  bytes_ = frames_->end();
+  frames_.reset();
 }
 
 void Appender::write_commit(std::uint32_t flags) {
-  cut_tail();
+  begin_writing();
   const std::uint64_t number = commits_ + 1;
   const Anchor base = flags == kClosed || number % kIndexLeap == 0 ? Anchor{}
                       : number % kIndexStep == 0                   ? leap_
@@ -226,7 +231,11 @@ void Appender::finish() {
 }
 
 std::string Appender::current_path() const {
-  return appeared_ ? path_ : path_ + kPartial;
+  return appeared_ ? path_ : partial_path(path_);
+}
+
+std::string Appender::partial_path(const std::string& path) {
+  return path + kPartial;
 }
 
 }  // namespace psf::formats

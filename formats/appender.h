@@ -48,6 +48,9 @@ class Appender {
   void close();
   void publish();
 
+  // What a new file is called until it appears: no input of its own may have that name.
+  [[nodiscard]] static std::string partial_path(const std::string& path);
+
   [[nodiscard]] const std::string& path() const { return path_; }  // the final one
   [[nodiscard]] std::string current_path() const;                  // `path`.partial before
   [[nodiscard]] const Head& head() const { return head_; }         // of the file
@@ -65,7 +68,7 @@ class Appender {
   };
 
   Appender(const std::string& path, const Head& head, bool sync, FrameWriter frames);
-  void cut_tail();
+  void begin_writing();
   void write_commit(std::uint32_t flags);
   void appear();
   void finish();
@@ -75,7 +78,8 @@ class Appender {
   bool sync_ = true;
   Appear appear_ = Appear::first_commit;
   bool appeared_ = false, closed_ = false;
-  bool tail_ = false;                  // of a resumed file: still behind its last commit
+  bool untouched_ = false;             // resumed, and nothing written yet
+  SlotRecord last_record_;             // of the commit that was resumed from
   std::uint32_t last_flags_ = 0;       // of the last commit
   std::optional<FrameWriter> frames_;  // until the file is done with
 

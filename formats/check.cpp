@@ -76,7 +76,15 @@ CheckReport check(const std::string& path,
                   const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
   const File file = File::open(path);
   CheckReport report;
-  Walk walk = walk_frames(file);
+  Walk walk = walk_frames(file, read_head(file, file.size()));
+  if (walk.commits.empty()) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: holds no readable commit: its writer was stopped before the "
+                            "first, or it is damaged; 'psf recover' saves what is whole",
+                            path));
+  }
+  // What comes behind the last commit is no fault, whatever it is.
+  drop_behind(walk, walk.end);
   check_frames(file, walk, report);
   report.faults.insert(report.faults.end(), walk.faults.begin(), walk.faults.end());
   summarise(walk, report);

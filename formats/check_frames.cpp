@@ -103,11 +103,7 @@ class FrameCheck {
                                 "and {}",
                                 commit.number, commit.previous, number, previous));
       }
-      if (commit.base > 0 &&
-          !std::any_of(walk_.commits.begin(), walk_.commits.end(), [&](const auto& other) {
-            return other.frame.prefix.offset == commit.base &&
-                   other.commit.chunks == commit.first_chunk;
-          })) {
+      if (commit.base > 0 && !is_base(commit)) {
         commit_places_.insert(commit.base);
         add(prefix, fmt::format("the commit at byte {} that its index continues cannot be read or "
                                 "does not fit",
@@ -115,6 +111,16 @@ class FrameCheck {
       }
       before = &walked;
     }
+  }
+
+  // Whether a commit that was found is what the index of this one continues.
+  [[nodiscard]] bool is_base(const Commit& commit) const {
+    const auto found = std::lower_bound(walk_.commits.begin(), walk_.commits.end(), commit.base,
+                                        [](const WalkedCommit& other, std::uint64_t offset) {
+                                          return other.frame.prefix.offset < offset;
+                                        });
+    return found != walk_.commits.end() && found->frame.prefix.offset == commit.base &&
+           found->commit.chunks == commit.first_chunk;
   }
 
   void check_sections(const WalkedCommit& walked) {

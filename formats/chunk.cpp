@@ -12,8 +12,16 @@
 namespace psf::formats {
 namespace {
 
-// Small enough that the checksum finds the bytes in the second-level cache.
+// Small enough that the checksum finds the bytes in the second-level cache, large enough that a
+// call costs little. Measured against one pread of 768 KiB from the page cache, one thread: 0.83 of
+// its speed in pieces of 32 KiB, 0.88 of 64, 0.90 of 128, 0.87 of 256 and 512, 0.80 in one. With a
+// checksum that folds 16 bytes at a time 0.75 to 0.77. Mapped column by column 0.75, by way of a
+// buffer that stays in the cache 0.66; a standing mapping of the whole file makes 0.92, but a file
+// that is cut meanwhile would kill the program.
 constexpr std::size_t kPiece = std::size_t{128} << 10;
+
+// Bytes that a stored byte of zstd can become: a block of 128 KiB takes 4 at least.
+constexpr std::uint64_t kMostZstd = std::uint64_t{32} << 10;
 
 [[noreturn]] void refuse(const std::string& why) {
   throw Error(ErrorCode::bad_input, why);
@@ -41,11 +49,25 @@ void check_column(const Column& column, std::uint64_t decoded, std::uint64_t fro
     refuse(fmt::format("unknown codec {} with filter {}", static_cast<int>(column.codec),
                        static_cast<int>(column.filter)));
   }
-  const bool fits = column.codec == Codec::raw ? column.stored == decoded : column.stored < decoded;
+  const bool fits =
+      column.codec == Codec::raw
+          ? column.stored == decoded
+          : column.stored < decoded && column.stored >= (decoded + kMostZstd - 1) / kMostZstd;
   if (!fits || column.offset < from || column.offset % kAlignment != 0 ||
       column.offset > frame_length || column.stored > frame_length - column.offset) {
     refuse("impossible place or length");
   }
+}
+
+void read_checked(const File& file, std::uint64_t frame_offset, const Column& column,
+                  std::span<std::byte> out) {
+  std::uint32_t crc = 0;
+  for (std::size_t begin = 0; begin < out.size(); begin += kPiece) {
+    const auto piece = out.subspan(begin, std::min(kPiece, out.size() - begin));
+    file.read_at(frame_offset + column.offset + begin, piece);
+    crc = crc32(crc, piece);
+  }
+  if (!crc_matches(crc, column.crc)) refuse("its checksum is wrong");
 }
 
 }  // namespace
@@ -105,20 +127,19 @@ Chunk decode_chunk(const Frame& frame, const Head& head) {
   return chunk;
 }
 
+EncodedColumn read_stored(const File& file, std::uint64_t frame_offset, const Column& column,
+                          Buffer& storage) {
+  const std::span<std::byte> bytes = storage.get(static_cast<std::size_t>(column.stored));
+  read_checked(file, frame_offset, column, bytes);
+  return {column.codec, column.filter, column.crc, bytes};
+}
+
 void read_column(const File& file, std::uint64_t frame_offset, const Column& column,
                  std::span<std::byte> out) {
+  if (column.codec == Codec::raw) return read_checked(file, frame_offset, column, out);
   thread_local Buffer buffer;
-  const bool raw = column.codec == Codec::raw;
-  const std::span<std::byte> stored =
-      raw ? out : buffer.get(static_cast<std::size_t>(column.stored));
-  std::uint32_t crc = 0;
-  for (std::size_t begin = 0; begin < stored.size(); begin += kPiece) {
-    const auto piece = stored.subspan(begin, std::min(kPiece, stored.size() - begin));
-    file.read_at(frame_offset + column.offset + begin, piece);
-    crc = crc32(crc, piece);
-  }
-  if (!crc_matches(crc, column.crc)) refuse("its checksum is wrong");
-  if (!raw) decode_zstd(stored, column.filter, out);
+  const EncodedColumn stored = read_stored(file, frame_offset, column, buffer);
+  decode_zstd(stored.bytes, stored.filter, out);
 }
 
 std::string record_range(std::uint64_t first, std::uint64_t count) {

@@ -31,6 +31,10 @@ struct Chunk {
 void read_column(const File& file, std::uint64_t frame_offset, const Column& column,
                  std::span<std::byte> out);
 
+// The same column as its stored bytes, which lie in `storage`: for a copy. Thread-safe.
+[[nodiscard]] EncodedColumn read_stored(const File& file, std::uint64_t frame_offset,
+                                        const Column& column, Buffer& storage);
+
 // "records 0-65535"
 [[nodiscard]] std::string record_range(std::uint64_t first, std::uint64_t count);
 

@@ -101,6 +101,13 @@ void decode_zstd(std::span<const std::byte> stored, Filter filter, std::span<std
   Scratch& mine = scratch();
   if (!mine.decompressor) mine.decompressor.reset(ZSTD_createDCtx());
   if (!mine.decompressor) throw std::bad_alloc();
+  // Before the scratch grows: several frames in a row are no column, and what says its own size
+  // has to say this one.
+  const unsigned long long told = ZSTD_getFrameContentSize(stored.data(), stored.size());
+  if (ZSTD_findFrameCompressedSize(stored.data(), stored.size()) != stored.size() ||
+      (told != ZSTD_CONTENTSIZE_UNKNOWN && told != out.size())) {
+    throw Error(ErrorCode::bad_input, "is not one Zstandard frame of the size of its records");
+  }
   const bool shuffled = filter == Filter::shuffle4;
   const std::span<std::byte> target = shuffled ? mine.shuffled.get(out.size()) : out;
   const std::size_t size = ZSTD_decompressDCtx(mine.decompressor.get(), target.data(),

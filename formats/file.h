@@ -35,6 +35,7 @@ class File {
   void write_at(std::uint64_t offset, std::span<const std::span<const std::byte>> parts);
   void sync();  // fdatasync
   void truncate(std::uint64_t size);
+  void flush();  // what close() does, and stays open and locked
   void close();  // throws where the system could not keep what was written
 
  private:

@@ -47,6 +47,16 @@ std::string_view name_of(Type type) {
   return "?";
 }
 
+std::string to_text(const Channel& channel) {
+  return fmt::format("{} {} x {}{}", channel.name, name_of(channel.type), channel.components,
+                     channel.encoding == Encoding::octahedral ? " octahedral" : "");
+}
+
+bool is_required_channel(std::string_view name) {
+  return name == "position" || name == "throughput" || name == "contribution" ||
+         name == "distance" || name == "pixel";
+}
+
 std::optional<std::size_t> Head::find(std::string_view channel) const {
   for (std::size_t k = 0; k < channels.size(); ++k) {
     if (channels[k].name == channel) return k;

@@ -56,6 +56,12 @@ struct Head {
   [[nodiscard]] std::size_t stride() const;  // stored bytes a record, all channels
 };
 
+// "normal u16 x 2 octahedral"
+[[nodiscard]] std::string to_text(const Channel& channel);
+
+// Whether every dump has it: README.md, "Channels".
+[[nodiscard]] bool is_required_channel(std::string_view name);
+
 // Throws Error{bad_input} that says which limit or rule of version 1 the head breaks (the caller
 // adds the file).
 void validate(const Head& head);

@@ -11,7 +11,13 @@
 namespace psf::formats {
 namespace {
 
-using Json = nlohmann::ordered_json;
+// Sorted by key for reading: the ordered kind looks through all keys for each, which for a MiB of
+// them takes many seconds.
+using Json = nlohmann::json;
+using OrderedJson = nlohmann::ordered_json;
+
+// Objects and arrays within each other. Whoever writes JSON again recurses as deep.
+constexpr int kMaxDepth = 64;
 
 // One JSON value and the pointer to it, for messages.
 struct Place {
@@ -81,7 +87,7 @@ void read(const Place& place, CameraInfo& out) {
   read_key(place, "projection", out.projection);
 }
 
-Json camera_json(const CameraInfo& camera) {
+OrderedJson camera_json(const CameraInfo& camera) {
   return {{"name", camera.name},
           {"width", camera.width},
           {"height", camera.height},
@@ -90,30 +96,52 @@ Json camera_json(const CameraInfo& camera) {
           {"projection", camera.projection}};
 }
 
+// Before parsing: the parser's own callback takes quadratic time.
+void check_depth(const std::string& json) {
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t k = 0; k < json.size(); ++k) {
+    const char c = json[k];
+    if (c == '"') quoted = !quoted;
+    if (quoted) {
+      if (c == '\\') ++k;
+      continue;
+    }
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > kMaxDepth) {
+      throw Error(
+          ErrorCode::limit,
+          fmt::format("metadata: more than {} objects or arrays within each other", kMaxDepth));
+    }
+  }
+}
+
 }  // namespace
 
 std::string to_json(const Metadata& metadata) {
-  Json cameras = Json::array();
+  OrderedJson cameras = OrderedJson::array();
   for (const CameraInfo& camera : metadata.cameras) cameras.push_back(camera_json(camera));
-  const Json json = {{"producer", metadata.producer},
-                     {"scene", metadata.scene},
-                     {"scene_hash", metadata.scene_hash},
-                     {"integrator", metadata.integrator},
-                     {"sampler", metadata.sampler},
-                     {"enumeration", metadata.enumeration},
-                     {"seed", metadata.seed},
-                     {"block_base", metadata.block_base},
-                     {"split", metadata.split},
-                     {"vertex_roughness", metadata.vertex_roughness},
-                     {"vertex_rule", metadata.vertex_rule},
-                     {"units", metadata.units},
-                     {"cameras", std::move(cameras)},
-                     {"lights", metadata.lights}};
+  const OrderedJson json = {{"producer", metadata.producer},
+                            {"scene", metadata.scene},
+                            {"scene_hash", metadata.scene_hash},
+                            {"integrator", metadata.integrator},
+                            {"sampler", metadata.sampler},
+                            {"enumeration", metadata.enumeration},
+                            {"seed", metadata.seed},
+                            {"block_base", metadata.block_base},
+                            {"split", metadata.split},
+                            {"vertex_roughness", metadata.vertex_roughness},
+                            {"vertex_rule", metadata.vertex_rule},
+                            {"units", metadata.units},
+                            {"cameras", std::move(cameras)},
+                            {"lights", metadata.lights}};
   // A name that is not UTF-8 (a file name may be any bytes) is stored with U+FFFD in it.
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
 Metadata parse_metadata(const std::string& json) {
+  check_depth(json);
   const Json root = Json::parse(json, nullptr, false);
   if (!root.is_object()) {
     throw Error(ErrorCode::bad_input, "metadata: expected a JSON object in UTF-8");

@@ -97,7 +97,7 @@ class Opening {
     if (promised > 0 && (!last_ || last_->frame.prefix.sequence < promised)) {
       fail(file_,
            fmt::format("damaged: the commit at byte {} is unreadable, so the records from {} "
-                       "on are lost; 'psf verify' names every fault",
+                       "on are lost; 'psf verify' names every fault, 'psf recover' saves the rest",
                        promised_at, last_ ? last_->commit.records : 0));
     }
     if (!last_) {
@@ -210,13 +210,15 @@ class Opening {
     }
     if (!missing.empty()) {
       missing.pop_back();
-      fail(file_,
-           fmt::format("damaged: cannot be found:{}; 'psf verify' names every fault", missing));
+      fail(file_, fmt::format("damaged: cannot be found:{}; 'psf verify' names every fault, 'psf "
+                              "recover' saves the rest",
+                              missing));
     }
     if (!is_complete()) {
       fail(file_,
            fmt::format("damaged: the totals of the commit at byte {} ({} records, {} chunks, "
-                       "{} passes) do not add up; 'psf verify' names every fault",
+                       "{} passes) do not add up; 'psf verify' names every fault, 'psf recover' "
+                       "saves the rest",
                        out_.last.prefix.offset, out_.commit.records, out_.commit.chunks,
                        out_.commit.passes));
     }
@@ -246,9 +248,12 @@ HeadFrame read_head(const File& file, std::uint64_t file_size) {
     std::array<std::byte, kMagic.size()> start{};
     if (file_size >= start.size()) file.read_at(0, start);
     if (std::memcmp(start.data(), kMagic.data(), kMagic.size()) != 0) {
-      fail(file, "is no path-vertex buffer; give the name of a .pvb file");
+      fail(file,
+           "is no path-vertex buffer; give the name of a .pvb file (or, where this was one, 'psf "
+           "recover' finds a copy of its header)");
     }
-    fail(file, fmt::format("its header cannot be read: {}; restore it from a copy or render again",
+    fail(file, fmt::format("its header cannot be read: {}; 'psf recover' finds a "
+                           "copy of it",
                            result.fault));
   }
   if (result.frame.prefix.type != kHeadType || result.frame.prefix.sequence != 0) {

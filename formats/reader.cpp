@@ -151,6 +151,10 @@ bool Reader::refresh() {
   return more;
 }
 
+bool Reader::is_being_written() const {
+  return File::is_being_written(path());
+}
+
 const std::string& Reader::path() const {
   return state_->file.path();
 }

@@ -63,6 +63,8 @@ class Reader {
   // reader. Throws what the constructor throws, and Error{bad_input} where another file now has the
   // name.
   bool refresh();
+  // Whether a program has the file open to write it.
+  [[nodiscard]] bool is_being_written() const;
 
   [[nodiscard]] std::uint64_t file_bytes() const;
   // What the producer handed to its last commit.

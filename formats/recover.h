@@ -18,18 +18,17 @@ struct RecoverOptions {
 struct RecoverReport {
   std::uint64_t records_saved = 0, chunks_saved = 0, passes_saved = 0;
   std::uint64_t records_lost = 0;       // that commits counted
-  std::uint64_t records_unknown = 0;    // at least: of commits that cannot be read but were there
   std::uint64_t uncommitted_bytes = 0;  // left behind: normal after a kill
-  std::string head_from;      // where HEAD came from when it could not be read; empty: it could
+  bool head_restored = false;           // HEAD was unreadable; a commit's copy stands for it
   std::vector<Fault> faults;  // what is wrong with the input, as check() has it, by offset
-  std::vector<Fault> losses;  // records that are not in the output, by record
+  std::vector<Fault> losses;  // what of it was committed and is not in the output, in order
 
   // Every record that was ever committed is in the output.
   [[nodiscard]] bool nothing_lost() const { return losses.empty(); }
 };
 
 // Writes the chunks of `in` whose columns are all whole to `out`, stored as they are, under a new
-// uuid, closed, a commit a pass. Records are numbered anew where some are missing; passes too. With
+// uuid, closed, a commit a pass. Records are numbered anew where some are missing, passes too. With
 // nothing lost the resume state is kept, so that the producer can go on. `out` is opened again and
 // checked before it gets its name. `progress(done, total)` in bytes, from the calling thread; may
 // throw to stop.

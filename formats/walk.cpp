@@ -66,7 +66,7 @@ void visit_all(const File& file, Walk& walk) {
 }
 
 template <class List, class Offset>
-void drop_tail(List& list, std::uint64_t end, const Offset& offset) {
+void drop(List& list, std::uint64_t end, const Offset& offset) {
   list.erase(std::remove_if(list.begin(), list.end(),
                             [&](const auto& element) { return offset(element) >= end; }),
              list.end());
@@ -74,30 +74,33 @@ void drop_tail(List& list, std::uint64_t end, const Offset& offset) {
 
 }  // namespace
 
-Walk walk_frames(const File& file) {
+Walk walk_frames(const File& file, HeadFrame head) {
   Walk walk;
   walk.file_size = file.size();
-  walk.head = read_head(file, walk.file_size);
+  walk.head = std::move(head);
   try {
     visit_all(file, walk);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::io) throw;
     throw Error(error.code(), fmt::format("{}: {}", file.path(), error.what()));
   }
-  if (walk.commits.empty()) {
-    throw Error(
-        ErrorCode::bad_input,
-        fmt::format("{}: holds no readable commit: its writer was stopped before the first, "
-                    "or it is damaged; render again",
-                    file.path()));
-  }
-  // What comes behind the last commit is no fault, whatever it is.
+  if (walk.commits.empty()) return walk;
   walk.end = walk.commits.back().frame.end();
-  drop_tail(walk.frames, walk.end, [](const Prefix& prefix) { return prefix.offset; });
-  drop_tail(walk.bad, walk.end, [](const Region& region) { return region.begin; });
-  drop_tail(walk.faults, walk.end, [](const Fault& fault) { return fault.offset; });
-  walk.chunks.erase(walk.chunks.lower_bound(walk.end), walk.chunks.end());
+  if (walk.commits.back().commit.foreign_required > 0) {  // they were there, and are unreadable
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: written by version {}.{} of the format, with frames that must be "
+                            "understood to read it; use a newer program",
+                            file.path(), walk.head.head.major, walk.head.head.minor));
+  }
   return walk;
+}
+
+void drop_behind(Walk& walk, std::uint64_t end) {
+  drop(walk.frames, end, [](const Prefix& prefix) { return prefix.offset; });
+  drop(walk.bad, end, [](const Region& region) { return region.begin; });
+  drop(walk.faults, end, [](const Fault& fault) { return fault.offset; });
+  drop(walk.commits, end, [](const WalkedCommit& commit) { return commit.frame.prefix.offset; });
+  walk.chunks.erase(walk.chunks.lower_bound(end), walk.chunks.end());
 }
 
 }  // namespace psf::formats

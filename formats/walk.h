@@ -33,9 +33,9 @@ struct Region {
 struct Walk {
   HeadFrame head;
   std::uint64_t file_size = 0;
-  std::uint64_t end = 0;                        // of the last commit
-  std::vector<Prefix> frames;                   // of all valid frames but HEAD, like the rest
-  std::vector<WalkedCommit> commits;            // up to the last commit
+  std::uint64_t end = 0;       // of the last commit; 0: there is none
+  std::vector<Prefix> frames;  // of all valid frames but HEAD
+  std::vector<WalkedCommit> commits;
   std::map<std::uint64_t, WalkedChunk> chunks;  // by offset
   std::vector<Region> bad;
   std::vector<Fault> faults;
@@ -43,8 +43,11 @@ struct Walk {
   [[nodiscard]] const Uuid& uuid() const { return head.frame.prefix.uuid; }
 };
 
-// Throws Error{bad_input} where there is no HEAD of version 1 or no commit, or a frame that must be
-// understood and is not.
-[[nodiscard]] Walk walk_frames(const File& file);
+// Of a file whose HEAD is `head`. Throws Error{bad_input} where a frame must be understood and is
+// not.
+[[nodiscard]] Walk walk_frames(const File& file, HeadFrame head);
+
+// Forgets what lies from `end` on.
+void drop_behind(Walk& walk, std::uint64_t end);
 
 }  // namespace psf::formats

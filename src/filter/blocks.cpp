@@ -56,6 +56,19 @@ Blocks::Blocks(const BlockSize& size, std::vector<std::uint64_t> pass_bounds,
   }
 }
 
+bool Blocks::is_whole(std::uint64_t k) const {
+  if (k + 1 < count_) return true;
+  switch (size_.kind) {
+    case BlockSize::Kind::power:
+      return all_.last % length_ == 0;
+    case BlockSize::Kind::passes:
+      return (last_pass_ - first_pass_) % size_.passes == 0;
+    case BlockSize::Kind::all:
+      break;
+  }
+  return false;
+}
+
 PathRange Blocks::operator[](std::uint64_t k) const {
   assert(k < count_);
   if (size_.kind == BlockSize::Kind::all) return all_;

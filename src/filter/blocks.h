@@ -29,6 +29,8 @@ class Blocks {
   [[nodiscard]] std::uint64_t count() const { return count_; }
   [[nodiscard]] PathRange operator[](std::uint64_t k) const;
   [[nodiscard]] PathRange all() const { return all_; }
+  // Whether more passes would leave block k as it is.
+  [[nodiscard]] bool is_whole(std::uint64_t k) const;
 
  private:
   BlockSize size_;

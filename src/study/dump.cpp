@@ -61,6 +61,17 @@ Dump::Dump(const std::string& path) : reader_(path), metadata_(metadata_of(reade
     throw Error(ErrorCode::bad_input,
                 path + ": holds no committed pass yet; wait for the renderer's first one");
   }
+  set_pass_bounds();
+}
+
+bool Dump::refresh() {
+  if (!reader_.refresh()) return false;
+  set_pass_bounds();
+  return true;
+}
+
+void Dump::set_pass_bounds() {
+  pass_bounds_.clear();
   for (const formats::Pass& pass : reader_.passes()) pass_bounds_.push_back(pass.first);
   pass_bounds_.push_back(reader_.records());
 }

@@ -29,6 +29,10 @@ class Dump {
   // camera.
   explicit Dump(const std::string& path);
 
+  // Takes in the passes committed since; true where the file says more than before. Throws what the
+  // constructor throws.
+  bool refresh();
+
   [[nodiscard]] const formats::Reader& reader() const { return reader_; }
   [[nodiscard]] const formats::Metadata& metadata() const { return metadata_; }
   [[nodiscard]] const std::vector<filter::CameraView>& cameras() const { return cameras_; }
@@ -51,6 +55,7 @@ class Dump {
   [[nodiscard]] std::size_t require(const char* channel, formats::Type type, std::size_t components,
                                     std::string_view wanted_by,
                                     std::string_view instead = {}) const;
+  void set_pass_bounds();
   void require_angles() const;
   void check_pixels(const filter::PathRange& range, const BlockRecords& records) const;
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "filter/average.h"
@@ -45,42 +47,61 @@ class Runner {
       : dump_(dump),
         run_(run),
         first_(run.passes.first),
-        last_(last_pass(dump, run.passes)),
-        blocks_(run.parameters.block, dump.pass_bounds(), first_, last_),
         channels_(dump.select(run.parameters, true)) {
-    check_snapshots(dump, run.snapshots, last_ - first_);
     for (const filter::CameraView& camera : dump.cameras()) {
       outcome_.pictures.emplace_back(camera, channels_.reflectance.has_value(),
                                      channels_.normal.has_value());
     }
   }
 
-  FilterOutcome run() {
-    for (std::uint64_t k = 0; k < blocks_.count(); ++k) {
-      const filter::PathRange range = blocks_[k];
-      const auto read_start = Clock::now();
-      dump_.read(range, channels_, records_);
-      outcome_.seconds_read += seconds_since(read_start);
-
-      const filter::Records records = records_.view();
-      const filter::Block block = describe(k, range);
-      filter::radii(run_.parameters.radius, records, block, radius_);
-      const filter::Average average = filter::average(records, radius_, block, run_.parameters);
-      outcome_.statistics += average.statistics;
-
-      add_to_pictures(range, records, average);
-      if (run_.on_progress)
-        run_.on_progress(range.last - blocks_.all().first, blocks_.all().size());
-    }
-    outcome_.passes = last_ - first_;
-    outcome_.blocks = blocks_.count();
+  // All passes up to `last`, not included.
+  FilterOutcome run(std::size_t last) {
+    set_last(last);
+    check_snapshots(dump_, run_.snapshots, last - first_);
+    while (next_block_ < blocks_->count()) filter_block(next_block_++);
     return std::move(outcome_);
   }
 
+  // The same, for a dump that grows: may be called again with more passes.
+  FilterOutcome run_so_far(std::size_t last) {
+    set_last(last);
+    while (next_block_ < blocks_->count() && blocks_->is_whole(next_block_)) {
+      filter_block(next_block_++);
+    }
+    if (next_block_ == blocks_->count()) return outcome_;
+    const FilterOutcome whole = outcome_;
+    filter_block(next_block_);
+    return std::exchange(outcome_, whole);
+  }
+
  private:
+  void set_last(std::size_t last) {
+    blocks_.emplace(run_.parameters.block, dump_.pass_bounds(), first_, last);
+    outcome_.passes = last - first_;
+    outcome_.blocks = blocks_->count();
+  }
+
+  void filter_block(std::uint64_t k) {
+    const filter::PathRange range = (*blocks_)[k];
+    const auto read_start = Clock::now();
+    dump_.read(range, channels_, records_);
+    outcome_.seconds_read += seconds_since(read_start);
+
+    const filter::Records records = records_.view();
+    const filter::Block block = describe(k, range);
+    filter::radii(run_.parameters.radius, records, block, radius_);
+    const filter::Average average = filter::average(records, radius_, block, run_.parameters);
+    outcome_.statistics += average.statistics;
+
+    add_to_pictures(range, records, average);
+    if (run_.on_progress) {
+      run_.on_progress(range.last - blocks_->all().first, blocks_->all().size());
+    }
+  }
+
   [[nodiscard]] filter::Block describe(std::uint64_t k, const filter::PathRange& range) const {
     const auto pixels = static_cast<double>(dump_.pixels());
-    const double samples = static_cast<double>(range.last - blocks_.all().first) / pixels;
+    const double samples = static_cast<double>(range.last - blocks_->all().first) / pixels;
     const double within = static_cast<double>(range.size()) / pixels;
     const bool by_samples = run_.parameters.radius.count == filter::RadiusCount::samples;
     // Paths enumerated by pixel fill whole pixels even where the block is less than a pass.
@@ -114,8 +135,9 @@ class Runner {
 
   const Dump& dump_;
   const FilterRun& run_;
-  std::size_t first_, last_;  // passes
-  filter::Blocks blocks_;
+  std::size_t first_;  // pass
+  std::optional<filter::Blocks> blocks_;
+  std::uint64_t next_block_ = 0;
   ChannelSet channels_;
   std::size_t next_snapshot_ = 0;
   BlockRecords records_;
@@ -127,7 +149,29 @@ class Runner {
 
 FilterOutcome filter_dump(const Dump& dump, const FilterRun& run) {
   run.parameters.validate();
-  return Runner(dump, run).run();
+  const std::size_t last = last_pass(dump, run.passes);
+  return Runner(dump, run).run(last);
+}
+
+FilterOutcome follow_dump(Dump& dump, const FilterRun& run,
+                          const std::function<void(const FilterOutcome&)>& on_pictures,
+                          const std::function<void()>& wait) {
+  run.parameters.validate();
+  Runner runner(dump, run);
+  FilterOutcome outcome;
+  for (;;) {
+    const std::size_t passes = dump.pass_bounds().size() - 1;
+    const std::size_t last = std::min(passes, run.passes.last.value_or(passes));
+    if (last > run.passes.first + outcome.passes) {
+      outcome = runner.run_so_far(last);
+      on_pictures(outcome);
+    }
+    if (dump.reader().closed() || last == run.passes.last) {
+      if (outcome.passes == 0) static_cast<void>(last_pass(dump, run.passes));
+      return outcome;
+    }
+    while (!dump.refresh()) wait();
+  }
 }
 
 }  // namespace psf::study

@@ -46,4 +46,13 @@ struct FilterOutcome {
 // have, Error{interrupted}.
 [[nodiscard]] FilterOutcome filter_dump(const Dump& dump, const FilterRun& run);
 
+// The same for a dump that is still being written: calls `on_pictures` whenever passes were
+// committed, with what filter_dump() would give for all there are by then, until the dump is closed
+// or has the last pass of the selection. Blocks that are whole are filtered once. Calls `wait`
+// between two looks at the file; it may throw to stop. Without snapshots and progress. What it
+// returns `on_pictures` was given last.
+[[nodiscard]] FilterOutcome follow_dump(
+    Dump& dump, const FilterRun& run, const std::function<void(const FilterOutcome&)>& on_pictures,
+    const std::function<void()>& wait);
+
 }  // namespace psf::study

@@ -5,8 +5,10 @@
 
 #include "catch.h"
 #include "file_bytes.h"
+#include "formats/chunk.h"
 #include "formats/crc.h"
 #include "formats/error.h"
+#include "formats/layout.h"
 
 using namespace psf;
 using namespace psf::formats;
@@ -71,4 +73,43 @@ TEST_CASE("a column comes back from either codec, and zstd is left where it gain
       CHECK_THROWS_AS(decode_zstd(column.bytes, column.filter, shorter), Error);
     }
   }
+}
+
+TEST_CASE("several Zstandard frames in a row are no column, even where their sizes add up") {
+  const test::Bytes raw(1000, std::byte{7});
+  Buffer storage;
+  const EncodedColumn column = encode_column(Codec::zstd, raw, storage);
+  const test::Bytes one(column.bytes.begin(), column.bytes.end());
+  // A frame to be skipped, of no bytes.
+  const test::Bytes nothing = {std::byte{0x50}, std::byte{0x2A}, std::byte{0x4D}, std::byte{0x18},
+                               std::byte{0},    std::byte{0},    std::byte{0},    std::byte{0}};
+  const auto joined = [](test::Bytes a, const test::Bytes& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  };
+  test::Bytes out(raw.size()), twice(2 * raw.size());
+  decode_zstd(one, column.filter, out);
+  CHECK_THROWS_AS(decode_zstd(joined(one, one), column.filter, twice), Error);
+  CHECK_THROWS_AS(decode_zstd(joined(nothing, one), column.filter, out), Error);
+  CHECK_THROWS_AS(decode_zstd(joined(one, nothing), column.filter, out), Error);
+  CHECK_THROWS_AS(decode_zstd(joined(one, {std::byte{0}}), column.filter, out), Error);
+}
+
+TEST_CASE("a zstd column that is too short for its records is refused before room is made") {
+  Head head;
+  head.chunk_capacity = kMaxChunkRecords;
+  head.channels = {{"value", Type::f32, 1}};
+  const auto decode = [&](std::uint64_t stored) {
+    Frame frame;
+    frame.prefix = {{}, kChunkType, 1, 0, 64 * kPage, 2};
+    frame.directory =
+        encode_chunk({0, 1u << 20, 0, {{0, Codec::zstd, Filter::shuffle4, 0, 128, stored}}});
+    return decode_chunk(frame, head);
+  };
+  // 4 MiB: 32 blocks of 128 KiB, of 4 bytes each at least.
+  CHECK_THROWS_AS(decode(127), Error);
+  CHECK(decode(128).columns.at(0).stored == 128);
+  const test::Bytes zeros(std::size_t{4} << 20);
+  Buffer storage;
+  CHECK(encode_column(Codec::zstd, zeros, storage).bytes.size() > 128);
 }

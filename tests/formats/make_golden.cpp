@@ -6,6 +6,7 @@
 #include <string>
 
 #include "golden.h"
+#include "golden_versions.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {
@@ -17,6 +18,10 @@ int main(int argc, char** argv) {
     psf::test::write_golden(folder + "/golden-raw.pvb", psf::formats::Codec::raw);
     psf::test::write_golden(folder + "/golden-zstd.pvb", psf::formats::Codec::zstd);
     psf::test::write_golden_tail(folder + "/golden-tail.pvb");
+    psf::test::write_golden_minor(folder + "/golden-minor.pvb");
+    psf::test::write_golden_major(folder + "/golden-major.pvb");
+    psf::test::write_golden_required(folder + "/golden-required.pvb");
+    psf::test::write_golden_swapped(folder + "/golden-swapped.pvb");
     const std::string example = folder + "/example.pvb";
     psf::test::write_example(example);
     std::fputs(psf::test::hex_dump(example).c_str(), stdout);

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""Reads a raw path-vertex buffer from formats/README.md alone, with the standard library; shares no code with psf.
+"""Reads a path-vertex buffer from formats/README.md alone, with the standard library; shares no code with psf.
 
-Prints a line a channel: name, type, components, encoding, all committed values as hexadecimal bytes.
+Prints a line a channel: name, type, components, encoding, all committed values as hexadecimal bytes. Columns in zstd
+are decoded by the program `zstd`.
 """
 import struct
+import subprocess
 import sys
 import zlib
 
@@ -27,6 +29,22 @@ def frame(data, offset, uuid=None):
     if flags & 1 and kind not in (b"HEAD", b"SLOT", b"CHNK", b"CMIT"):
         sys.exit("a frame that must be understood: %r" % kind)
     return kind, directory, length
+
+
+def decoded(stored, codec, filter_, length):
+    """The values of a column, `length` bytes."""
+    if codec == 0:
+        assert filter_ == 0
+        return stored
+    assert codec == 1 and filter_ in (0, 1) and len(stored) < length
+    plain = subprocess.run(["zstd", "-dcq"], input=stored, stdout=subprocess.PIPE, check=True).stdout
+    if filter_ == 0:
+        return plain
+    n = length // 4
+    column = bytearray(plain)
+    for k in range(4):
+        column[k:4 * n:4] = plain[k * n:(k + 1) * n]
+    return bytes(column)
 
 
 def read(path):
@@ -59,9 +77,10 @@ def read(path):
                 channel, codec, filter_, crc, place, stored = struct.unpack_from(
                     "<HBBIQQ", directory, 32 + 24 * k)
                 column = data[offset + place:offset + place + stored]
-                assert channel == k and codec == 0 and filter_ == 0 and place % 64 == 0
-                assert stored == size * channels[k][2] * channels[k][3]
-                assert zlib.crc32(column) == crc
+                assert channel == k and place % 64 == 0 and zlib.crc32(column) == crc
+                wanted = size * channels[k][2] * channels[k][3]
+                column = decoded(column, codec, filter_, wanted)
+                assert len(column) == wanted
                 pending[k] += column
             records += size
         elif kind == b"CMIT":

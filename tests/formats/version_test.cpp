@@ -1,10 +1,15 @@
 // Versions: what may be ignored is ignored, what must be understood is refused by name.
+#include <filesystem>
+
 #include "catch.h"
 #include "file_bytes.h"
 #include "formats/check.h"
 #include "formats/error.h"
 #include "formats/reader.h"
+#include "formats/recover.h"
+#include "formats/concatenate.h"
 #include "golden.h"
+#include "golden_versions.h"
 
 using namespace psf;
 using namespace psf::formats;
@@ -126,4 +131,85 @@ TEST_CASE("frames of other types are skipped, or refused where they must be unde
   required.at(test::frames(required, "SLOT").at(0).offset) ^= std::byte{1};
   test::save(path, required);
   CHECK(refusal(path).find("NEWF") != std::string::npos);
+}
+
+namespace {
+
+const std::string kData = PSF_SOURCE_DIR "/sample_data/";
+
+void check_example(const Reader& reader) {
+  REQUIRE(reader.records() == 3);
+  CHECK(reader.closed());
+  std::array<float, 9> position{};
+  reader.read_floats(0, 0, 3, position);
+  CHECK(position == std::array<float, 9>{1, 2, 3, 0.5f, -0.5f, 0.25f, 0, 0, 0});
+  test::Bytes flags(3);
+  reader.read(1, 0, 3, flags);
+  CHECK(flags == test::Bytes{std::byte{3}, std::byte{1}, std::byte{0}});
+}
+
+void check_later(const Head& head) {
+  CHECK(head.minor == 1);
+  CHECK(head.optional_features == 0x80000001u);
+  CHECK(head.metadata == R"({"producer":"later","later.key":{"deep":[1,2]}})");
+  CHECK(std::string(reinterpret_cast<const char*>(head.later_bytes.data()),
+                    head.later_bytes.size()) == "bytes of version 1.1");
+}
+
+}  // namespace
+
+TEST_CASE("the golden file of a later minor version is read, and copied with all it declares") {
+  const test::Scratch scratch;
+  const std::string minor = kData + "golden-minor.pvb";
+  check_example(Reader(minor));
+  check_later(Reader(minor).head());
+  CHECK(check(minor).faults.empty());
+  CHECK(recover(minor, scratch.path("a.pvb")).nothing_lost());
+  static_cast<void>(concatenate(std::vector{minor}, scratch.path("b.pvb")));
+  // Its header lost: the copy has all of it too.
+  test::Bytes bytes = test::load(minor);
+  bytes.at(70) ^= std::byte{1};
+  test::save(scratch.path("torn.pvb"), bytes);
+  CHECK(recover(scratch.path("torn.pvb"), scratch.path("c.pvb")).head_restored);
+  for (const char* name : {"a.pvb", "b.pvb", "c.pvb"}) {
+    check_example(Reader(scratch.path(name)));
+    check_later(Reader(scratch.path(name)).head());
+  }
+}
+
+TEST_CASE("golden files that this version cannot read are refused, saying which wrote them") {
+  const test::Scratch scratch;
+  CHECK(refusal(kData + "golden-major.pvb").find("written by version 2.0") != std::string::npos);
+  const std::string required = refusal(kData + "golden-required.pvb");
+  CHECK(required.find("written by version 1.0") != std::string::npos);
+  CHECK(required.find("bits 0x4") != std::string::npos);
+  CHECK(refusal(kData + "golden-swapped.pvb").find("header cannot be read") != std::string::npos);
+  for (const std::string name : {"golden-major.pvb", "golden-required.pvb", "golden-swapped.pvb"}) {
+    const std::string copy = scratch.path("copy.pvb"), out = scratch.path("out.pvb");
+    const test::Bytes whole = test::load(kData + name);
+    test::save(copy, whole);
+    CHECK_THROWS_AS(recover(copy, out), Error);
+    CHECK_THROWS_AS(concatenate(std::vector{copy}, out), Error);
+    CHECK_THROWS_AS(Writer::resume(copy, Reader(kData + "golden-minor.pvb").head()), Error);
+    CHECK(test::load(copy) == whole);
+    CHECK_FALSE(std::filesystem::exists(out));
+    CHECK_FALSE(std::filesystem::exists(out + ".partial"));
+  }
+}
+
+TEST_CASE("the golden files of other versions are made again byte for byte") {
+  const test::Scratch scratch;
+  const std::string path = scratch.path("v.pvb");
+  const auto same = [&](const char* name) {
+    const test::Bytes golden = test::load(kData + name);
+    return test::load(path) == golden && golden.size() < 25'000;
+  };
+  test::write_golden_minor(path);
+  CHECK(same("golden-minor.pvb"));
+  test::write_golden_major(path);
+  CHECK(same("golden-major.pvb"));
+  test::write_golden_required(path);
+  CHECK(same("golden-required.pvb"));
+  test::write_golden_swapped(path);
+  CHECK(same("golden-swapped.pvb"));
 }

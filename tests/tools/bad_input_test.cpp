@@ -131,6 +131,26 @@ TEST_CASE("every mistake is one line, has its exit code and leaves nothing behin
       {"psf filter FOLDER/good.pvb -o FOLDER/x.exr --passes 1:9", 2, "has passes 0:2"},
       {"psf filter FOLDER/good.pvb -o FOLDER/nowhere/x.exr", 4, "does not exist, create it first"},
       {"psf filter FOLDER/good.pvb -o FOLDER/x.jpg", 2, "use .exr or .png"},
+      {"psf filter FOLDER/good.pvb -o FOLDER/x.exr --follow --snapshots pow2", 2, "--follow"},
+      // stopping, saving, joining
+      {"psf-render SAMPLES/cornell.json --image FOLDER/x.exr --resume", 2, "give -o OUT.pvb"},
+      {"psf-render SAMPLES/cornell.json -o FOLDER/text.pvb --resume", 3, "is no path-vertex"},
+      {"psf-render SAMPLES/cornell.json -o FOLDER/good.pvb --resume --quiet", 3, "another scene"},
+      {"psf-render SAMPLES/cornell.json --size 16x16 --seed 1 -o FOLDER/good.pvb --resume --quiet",
+       3, "it was rendered with seed 0, now it is 1"},
+      {"psf recover FOLDER/good.pvb", 2, "OUT is required"},
+      {"psf recover FOLDER/good.pvb FOLDER/good.pvb", 2, "the damaged file itself"},
+      {"psf recover FOLDER/text.pvb FOLDER/x.pvb", 3, "nothing can be saved"},
+      {"psf recover FOLDER/nowhere.pvb FOLDER/x.pvb", 4, "nowhere.pvb: "},
+      {"psf recover FOLDER/good.pvb FOLDER/nowhere/x.pvb", 4, "nowhere/x.pvb"},
+      {"psf cat FOLDER/good.pvb", 2, "--output is required"},
+      {"psf cat FOLDER/good.pvb FOLDER/lacking.pvb -o FOLDER/x.pvb", 3, "it has other channels"},
+      {"psf cat FOLDER/good.pvb FOLDER/text.pvb -o FOLDER/x.pvb", 3, "is no path-vertex buffer"},
+      {"psf cat FOLDER/good.pvb -o FOLDER/x.pvb --drop pixel", 2, "cannot be dropped"},
+      {"psf cat FOLDER/good.pvb -o FOLDER/x.pvb --drop pixle", 2, "has no channel pixle"},
+      {"psf cat FOLDER/good.pvb -o FOLDER/x.pvb --quantize flags", 2, "only f32"},
+      {"psf cat FOLDER/good.pvb -o FOLDER/x.pvb --passes 2:3", 2, "passes 2:3 are no part"},
+      {"psf cat FOLDER/good.pvb -o FOLDER/x.pvb --codec lz4", 2, "--codec"},
   };
   for (const Mistake& mistake : mistakes) {
     const Outcome outcome = workplace.make(mistake);
@@ -161,8 +181,8 @@ TEST_CASE("a dump whose writer was killed is filtered up to its last commit") {
 }
 
 TEST_CASE("every verb has a help with an example") {
-  for (const std::string command :
-       {"psf", "psf filter", "psf info", "psf verify", "psf compare", "psf-render"}) {
+  for (const std::string command : {"psf", "psf filter", "psf info", "psf verify", "psf recover",
+                                    "psf cat", "psf compare", "psf export", "psf-render"}) {
     const Outcome outcome = run(command + " --help");
     CHECK(outcome.code == 0);
     CHECK(outcome.out.find("Example:\n  " + command.substr(0, command.find(' '))) !=

@@ -9,6 +9,7 @@
 
 #include "filter/parameters_text.h"
 #include "study/filter_dump.h"
+#include "text.h"
 
 namespace psf::tools {
 
@@ -20,20 +21,6 @@ struct FilterReport {
   std::vector<std::string> written;  // files
   double seconds_write = 0, seconds = 0;
 };
-
-// 1234567 -> "1,234,567"
-inline std::string with_commas(std::uint64_t value) {
-  std::string text = std::to_string(value);
-  for (std::size_t left = text.size(); left > 3;) {
-    left -= 3;
-    text.insert(left, ",");
-  }
-  return text;
-}
-
-inline std::string counted(std::uint64_t count, const char* one, const char* many) {
-  return with_commas(count) + " " + (count == 1 ? one : many);
-}
 
 // "a 1, b 2" of those that are not 0, or `otherwise`.
 template <typename Names, typename Counts, typename Format>

@@ -12,6 +12,9 @@ int main(int argc, char** argv) {
   psf::tools::add_filter(app);
   psf::tools::add_info(app);
   psf::tools::add_verify(app);
+  psf::tools::add_recover(app);
+  psf::tools::add_cat(app);
+  psf::tools::add_export(app);
   psf::tools::add_compare(app);
   return psf::tools::run_tool(app, argc, argv);
 }

@@ -9,8 +9,10 @@
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "fault_json.h"
 #include "formats/check.h"
 #include "formats/error.h"
+#include "text.h"
 #include "verbs.h"
 
 namespace psf::tools {
@@ -22,18 +24,6 @@ struct VerifyOptions {
 };
 
 nlohmann::ordered_json to_json(const std::string& path, const formats::CheckReport& report) {
-  nlohmann::ordered_json faults = nlohmann::ordered_json::array();
-  for (const formats::Fault& fault : report.faults) {
-    nlohmann::ordered_json entry = {{"offset", fault.offset}, {"frame", fault.frame}};
-    if (fault.chunk) entry["chunk"] = *fault.chunk;
-    if (!fault.channel.empty()) entry["channel"] = fault.channel;
-    if (fault.records > 0) {
-      entry["first_record"] = fault.first;
-      entry["records"] = fault.records;
-    }
-    entry["message"] = fault.message;
-    faults.push_back(std::move(entry));
-  }
   return {{"file", path},
           {"whole", report.faults.empty()},
           {"closed", report.closed},
@@ -45,7 +35,7 @@ nlohmann::ordered_json to_json(const std::string& path, const formats::CheckRepo
           {"chunks", report.chunks},
           {"columns", report.columns},
           {"commits", report.commits},
-          {"faults", std::move(faults)}};
+          {"faults", faults_to_json(report.faults)}};
 }
 
 void run(const VerifyOptions& options) {
@@ -67,17 +57,19 @@ void run(const VerifyOptions& options) {
   const std::string tail = report.uncommitted_bytes == 0
                                ? ""
                                : fmt::format("; {} bytes behind the last commit are not committed",
-                                             report.uncommitted_bytes);
+                                             with_commas(report.uncommitted_bytes));
   if (!report.faults.empty()) {
     std::fflush(stdout);
     throw Error(ErrorCode::comparison,
-                fmt::format("{}: {} fault{} in {} frames{}; restore it from a copy or render again",
-                            options.input, report.faults.size(),
-                            report.faults.size() == 1 ? "" : "s", report.frames, tail));
+                fmt::format("{}: {} in {}{}; 'psf recover' saves what is whole", options.input,
+                            counted(report.faults.size(), "fault", "faults"),
+                            counted(report.frames, "frame", "frames"), tail));
   }
-  fmt::print("{}: whole: {} records in {} passes, {} columns in {} chunks, {}{}\n", options.input,
-             report.records, report.passes, report.columns, report.chunks,
-             report.closed ? "closed" : "not closed", tail);
+  fmt::print("{}: whole: {} in {}, {} in {}, {}{}\n", options.input,
+             counted(report.records, "record", "records"), counted(report.passes, "pass", "passes"),
+             counted(report.columns, "column", "columns"),
+             counted(report.chunks, "chunk", "chunks"), report.closed ? "closed" : "not closed",
+             tail);
 }
 
 }  // namespace

@@ -1,0 +1,16 @@
+// HEAD of a file whose first frame is unreadable, from the copies in its commits.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "formats/file.h"
+#include "formats/open.h"
+
+namespace psf::formats {
+
+// The copy of the first commit that has a whole one, of whatever uuid. Nothing where there is none.
+// Throws only Error{io}.
+[[nodiscard]] std::optional<HeadFrame> restore_head(const File& file, std::uint64_t file_size);
+
+}  // namespace psf::formats

@@ -1,0 +1,10 @@
+// The subcommands of psf-bench. One file each.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace psf::bench {
+
+void add_files(CLI::App& app);
+
+}  // namespace psf::bench

@@ -1,0 +1,50 @@
+// Rows of a benchmark: a figure with its spread and its target, as a table and as JSON.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace psf::bench {
+
+struct Spread {
+  double median = 0, min = 0, max = 0;
+};
+// Of at least one value.
+[[nodiscard]] Spread spread(std::vector<double> values);
+
+struct Target {
+  enum class Kind { at_least, at_most } kind = Kind::at_most;
+  double value = 0;
+
+  [[nodiscard]] bool is_met(double median) const {
+    return kind == Kind::at_least ? median >= value : median <= value;
+  }
+};
+
+struct Row {
+  std::string name;  // for programs: "read_raw_1"
+  std::string what;  // for people
+  std::string unit;  // "x" for ratios, "%", "s", "GB/s"
+  Spread value;
+  std::optional<Target> target;  // none: for information
+  std::string detail;            // what the figure was made from
+};
+
+// Seconds that a call takes, by the clock on the wall.
+template <class Call>
+[[nodiscard]] double seconds_of(const Call& call) {
+  const auto start = std::chrono::steady_clock::now();
+  call();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void print_table(const std::vector<Row>& rows);
+[[nodiscard]] nlohmann::ordered_json to_json(const std::vector<Row>& rows);
+// Names of the rows whose target is missed.
+[[nodiscard]] std::vector<std::string> missed(const std::vector<Row>& rows);
+
+}  // namespace psf::bench

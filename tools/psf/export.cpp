@@ -1,0 +1,180 @@
+// psf export: writes a dump in the formats of other programs.
+#include "study/export.h"
+#include "text.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli.h"
+#include "core/output_file.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "formats/error.h"
+#include "formats/reader.h"
+#include "option_values.h"
+#include "pass_range.h"
+#include "verbs.h"
+
+namespace psf::tools {
+namespace {
+
+constexpr std::size_t kProgressSteps = 1000;
+
+struct ExportOptions {
+  CommonOptions common;
+  std::string input, output, format, passes;
+  std::vector<std::string> channels;
+  std::uint64_t every = 1;
+  // As written; empty: not given.
+  std::string colour, exposure;
+};
+
+[[noreturn]] void refuse(const std::string& why) {
+  throw Error(ErrorCode::usage, why);
+}
+
+std::string format_of(const ExportOptions& options) {
+  if (!options.format.empty()) return options.format;
+  const std::string extension = std::filesystem::path(options.output).extension().string();
+  if (extension == ".ply") return "ply";
+  if (extension == ".csv") return "csv";
+  if (extension.empty()) return "npy";
+  refuse(
+      fmt::format("{}: unknown format {}; end the name in .ply or .csv, give a folder for .npy "
+                  "arrays, or say --format",
+                  options.output, extension));
+}
+
+study::PlyOptions ply_options(const ExportOptions& options, const std::string& format) {
+  study::PlyOptions ply;
+  if (format != "ply" && !(options.colour.empty() && options.exposure.empty())) {
+    refuse(options.output + ": --colour and --exposure are for point clouds (.ply) alone");
+  }
+  if (!options.colour.empty()) ply.colour = options.colour;
+  if (options.exposure == "auto") {
+    ply.exposure.reset();
+  } else if (!options.exposure.empty()) {
+    ply.exposure = parse_number<float>(options.exposure);
+    if (!ply.exposure || std::abs(*ply.exposure) > 100) {
+      refuse(fmt::format("--exposure: '{}' is neither auto nor a number of stops from -100 to 100",
+                         options.exposure));
+    }
+  }
+  return ply;
+}
+
+nlohmann::ordered_json to_json(const ExportOptions& options, const std::string& format,
+                               const study::ExportOutcome& outcome, double seconds) {
+  return {{"file", options.input},
+          {"format", format},
+          {"records", outcome.records},
+          {"passes", outcome.passes},
+          {"written", outcome.written},
+          {"without_vertex", outcome.without_vertex},
+          {"non_finite", outcome.non_finite},
+          {"exposure", outcome.exposure},
+          {"files", outcome.files},
+          {"bytes", outcome.bytes},
+          {"seconds", seconds}};
+}
+
+void print(const ExportOptions& options, const std::string& format,
+           const study::ExportOutcome& outcome) {
+  const bool points = format == "ply";
+  fmt::print("{}: {} of {}, {:.1f} MB", options.output,
+             points ? counted(outcome.written, "point", "points")
+                    : counted(outcome.written, "record", "records"),
+             counted(outcome.passes, "pass", "passes"), static_cast<double>(outcome.bytes) / 1e6);
+  if (format == "npy") fmt::print(" in {} files", outcome.files.size());
+  if (points) fmt::print("; left out {} without vertex", with_commas(outcome.without_vertex));
+  if (outcome.non_finite > 0) fmt::print(" and {} not finite", with_commas(outcome.non_finite));
+  if (options.exposure == "auto") fmt::print("; exposure {:.2f}", outcome.exposure);
+  fmt::print("\n");
+}
+
+void run(const ExportOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const core::ThreadLimit threads(options.common.threads);
+  const std::string format = format_of(options);
+  const study::PlyOptions ply = ply_options(options, format);
+  study::ExportSelection selection;
+  selection.channels = options.channels;
+  selection.passes = parse_passes(options.passes);
+  selection.every = options.every;
+  if (!options.common.json.empty()) core::OutputFile probe(options.common.json);
+
+  const formats::Reader reader(options.input);
+  core::Progress bar("export", kProgressSteps, options.common.quiet);
+  const study::ExportProgress progress = [&bar](std::uint64_t done, std::uint64_t total) {
+    bar.advance(static_cast<std::size_t>(1.0 * kProgressSteps * static_cast<double>(done) /
+                                         static_cast<double>(total)));
+  };
+  const study::ExportOutcome outcome =
+      format == "npy"   ? study::export_npy(reader, selection, options.output, progress)
+      : format == "csv" ? study::export_csv(reader, selection, options.output, progress)
+                        : study::export_ply(reader, selection, ply, options.output, progress);
+  bar.finish();
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  print(options, format, outcome);
+  if (!options.common.json.empty()) {
+    core::write_text_file(options.common.json,
+                          to_json(options, format, outcome, seconds).dump(2) + "\n");
+  }
+}
+
+}  // namespace
+
+void add_export(CLI::App& app) {
+  auto shared = std::make_shared<ExportOptions>();
+  ExportOptions& options = *shared;
+  CLI::App* command =
+      app.add_subcommand("export", "write a dump as numpy arrays, a point cloud or CSV");
+  command->add_option("IN", options.input, "path-vertex buffer")->required()->type_name("FILE.pvb");
+  command
+      ->add_option("-o,--output", options.output,
+                   "a folder (an .npy for each channel), or a name that ends in .ply or .csv")
+      ->required()
+      ->type_name("NAME");
+  command->add_option("--format", options.format, "the format, whatever the name")
+      ->check(CLI::IsMember({"npy", "ply", "csv"}));
+  command
+      ->add_option("--channels", options.channels,
+                   "only these (npy, csv); also these, as scalar fields (ply)")
+      ->allow_extra_args(false)
+      ->delimiter(',')
+      ->type_name("NAME,...");
+  command->add_option("--passes", options.passes, kPassesHelp)
+      ->type_name("FIRST:LAST");
+  add_number(*command, "--every", options.every, std::uint64_t{1}, std::uint64_t{1} << 40,
+             "only every N-th record; an odd N leaves no stripes");
+  command
+      ->add_option("--colour,--color", options.colour,
+                   "colour of the points: contribution (default), radiance (of the whole path), "
+                   "reflectance, normal, any other channel, or none. Radiances are multiplied by "
+                   "2^exposure, tone-mapped and sRGB-encoded like the .png of psf filter; "
+                   "reflectance is sRGB-encoded; normals are (n + 1) / 2; whole numbers get a "
+                   "colour each")
+      ->type_name("NAME")
+      ->group("Point clouds");
+  command
+      ->add_option("--exposure", options.exposure,
+                   "0 by default, as in pictures; auto: the mean of the logarithm of the points' "
+                   "luminance is shown as that of 18% grey")
+      ->type_name("STOPS|auto")
+      ->group("Point clouds");
+  add_common(*command, options.common);
+  wrap_descriptions(*command);
+  set_example(*command, "psf export scene.pvb -o scene.ply --colour radiance --every 7");
+  command->callback([shared] { run(*shared); });
+}
+
+}  // namespace psf::tools

@@ -1,0 +1,136 @@
+// Declares the options of psf filter and turns their text into parameters.
+#include "filter_options.h"
+
+#include <algorithm>
+
+#include "filter/parameters_text.h"
+#include "pass_range.h"
+
+namespace psf::tools {
+namespace {
+
+filter::WeightTerms weights_of(const FilterOptions& options) {
+  using filter::parse_threshold;
+  filter::WeightTerms terms =
+      options.no_weights ? filter::WeightTerms::none() : filter::WeightTerms();
+  const auto set = [](std::optional<float>& term, const std::string& text, const char* option) {
+    if (!text.empty()) term = parse_threshold(text, option);
+  };
+  set(terms.normal, options.normal, "--normal");
+  set(terms.reflectance, options.reflectance, "--reflectance");
+  set(terms.hit_distance, options.hit_distance, "--hit-distance");
+  set(terms.plane, options.plane, "--plane");
+  set(terms.direction, options.direction, "--direction");
+  terms.visibility = options.visibility.value_or(terms.visibility);
+  terms.material = options.material;
+  return terms;
+}
+
+void add_weights(CLI::App& command, FilterOptions& options) {
+  const auto term = [&command](const char* name, std::string& text, const char* help) {
+    command.add_option(name, text, help)->type_name("T|off")->group("Weights");
+  };
+  term("--normal", options.normal, "n_i . n_j >= T (default 0.95)");
+  term("--reflectance", options.reflectance, "norm(rho_i - rho_j) <= T (default 0.05)");
+  term("--hit-distance", options.hit_distance,
+       "first hits differ by at most T of the longer (default off)");
+  term("--plane", options.plane, "at most T radii off the tangent plane (default off)");
+  term("--direction", options.direction,
+       "directions to the camera: omega_i . omega_j >= T (default off)");
+  command
+      .add_flag_function(
+          "--visibility", [&options](std::int64_t on) { options.visibility = on > 0; },
+          "the same lights are visible (default on; --visibility=off)")
+      ->group("Weights");
+  command.add_flag("--material", options.material, "the same material")->group("Weights");
+  command.add_flag("--no-weights", options.no_weights, "no terms but those given")
+      ->group("Weights");
+}
+
+}  // namespace
+
+filter::Parameters parameters_of(const FilterOptions& options) {
+  filter::Parameters parameters;
+  if (!options.r0.empty()) filter::parse_radius(options.r0, parameters.radius);
+  parameters.radius.delta = options.delta;
+  parameters.radius.count =
+      options.radius_count == "blocks" ? filter::RadiusCount::blocks : filter::RadiusCount::samples;
+  if (!options.block.empty()) parameters.block = filter::parse_block(options.block);
+  parameters.weights = weights_of(options);
+  parameters.demodulate = options.demodulate;
+  parameters.iterations = options.iterations;
+  if (!options.sources.empty()) parameters.sources = filter::parse_sources(options.sources);
+  parameters.estimator =
+      options.estimator == "disk" ? filter::Estimator::disk : filter::Estimator::average;
+  parameters.search = options.search == "brute" ? search::Kind::brute : search::Kind::plain;
+  parameters.count_refusals = !options.no_refusals;
+  parameters.validate();
+  return parameters;
+}
+
+std::vector<std::uint64_t> snapshots_of(const std::string& text, std::uint64_t passes) {
+  std::vector<std::uint64_t> list;
+  if (text == "pow2") {
+    for (std::uint64_t n = 1; n <= passes; n *= 2) list.push_back(n);
+  } else {
+    for (std::size_t begin = 0; begin < text.size();) {
+      const std::size_t comma = std::min(text.find(',', begin), text.size());
+      list.push_back(parse_pass(text.substr(begin, comma - begin), "--snapshots"));
+      begin = comma + 1;
+    }
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  return list;
+}
+
+void add_filter_options(CLI::App& command, FilterOptions& options) {
+  command.add_option("IN", options.input, "path-vertex buffer")->required()->type_name("FILE.pvb");
+  command
+      .add_option("-o,--output", options.outputs,
+                  "picture, .exr with all layers or .png; may be repeated")
+      ->required()
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  command.add_option("--r0", options.r0, "radius: 8px, 0.02 of the distance, 0.5wu (default 8px)")
+      ->type_name("R");
+  command
+      .add_option("--delta", options.delta,
+                  "radius shrinks like n^(-delta/2); in [0, 1), 0 keeps it")
+      ->capture_default_str();
+  command.add_option("--radius-count", options.radius_count, "what n counts")
+      ->check(CLI::IsMember({"samples", "blocks"}))
+      ->capture_default_str();
+  command
+      .add_option("--block", options.block,
+                  "paths averaged with each other: 2^16, 16passes, all (default 1pass)")
+      ->type_name("B");
+  add_weights(command, options);
+  command.add_flag("--demodulate", options.demodulate,
+                   "average c / rho and multiply by rho: textures stay sharp");
+  command.add_option("--iterations", options.iterations, "filter so many times")
+      ->capture_default_str();
+  command.add_option("--sources", options.sources, "use only this share of the contributions")
+      ->type_name("1/K");
+  command.add_option("--estimator", options.estimator, "average, or disk: photon mapping's")
+      ->check(CLI::IsMember({"average", "disk"}))
+      ->capture_default_str();
+  command.add_option("--passes", options.passes, kPassesHelp)->type_name("FIRST:LAST");
+  command
+      .add_option("--snapshots", options.snapshots,
+                  "also write FILE.0001.exr ... after so many passes")
+      ->type_name("pow2|N,N,...");
+  command.add_option("--search", options.search, "neighbour search")
+      ->check(CLI::IsMember({"plain", "brute"}))
+      ->capture_default_str();
+  command.add_flag("--no-refusals", options.no_refusals,
+                   "do not count what each weight refuses: faster");
+  command
+      .add_flag("--follow", options.follow,
+                "of a dump that is being written: a new picture whenever a pass is committed, "
+                "until it is closed")
+      ->excludes("--snapshots");
+  add_common(command, options.common);
+}
+
+}  // namespace psf::tools

@@ -1,0 +1,24 @@
+// Numbers as people read them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace psf::tools {
+
+// 1234567 -> "1,234,567"
+inline std::string with_commas(std::uint64_t value) {
+  std::string text = std::to_string(value);
+  for (std::size_t left = text.size(); left > 3;) {
+    left -= 3;
+    text.insert(left, ",");
+  }
+  return text;
+}
+
+// "1 pass", "2 passes"
+inline std::string counted(std::uint64_t count, const char* one, const char* many) {
+  return with_commas(count) + " " + (count == 1 ? one : many);
+}
+
+}  // namespace psf::tools
