@@ -18,6 +18,8 @@
 namespace psf::formats {
 namespace {
 
+constexpr int kAttempts = 4;
+
 [[noreturn]] void fail(const File& file, const std::string& why) {
   throw Error(ErrorCode::bad_input, fmt::format("{}: {}", file.path(), why));
 }
@@ -268,7 +270,17 @@ HeadFrame read_head(const File& file, std::uint64_t file_size) {
 }
 
 Opened open_buffer(const File& file) {
-  return Opening(file).run();
+  for (int attempt = 1;; ++attempt) {
+    const std::uint64_t size = file.size();
+    try {
+      return Opening(file).run();
+    } catch (const Error& error) {
+      // A writer that goes on cuts off what was uncommitted, and it may be what was just read.
+      const bool changed = error.code() == ErrorCode::io || file.size() != size ||
+                           File::is_being_written(file.path());
+      if (!changed || attempt == kAttempts) throw;
+    }
+  }
 }
 
 }  // namespace psf::formats

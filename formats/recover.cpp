@@ -200,7 +200,7 @@ class Recovery {
 
   // Between the last readable commit and a later one there may have been more than was found.
   void check_end() {
-    if (committed_ <= walk_.end) return;
+    if (committed_ <= walk_.end) return check_slot();
     std::uint64_t place = std::max(walk_.end, walk_.head.frame.end());
     for (const Prefix& frame : walk_.frames) {
       if (frame.offset == place) place += frame.length;
@@ -208,6 +208,22 @@ class Recovery {
     if (place < committed_ || committed_ == walk_.file_size) {
       lose({place, "", {}, {}, 0, 0, "a pass was committed behind here and is not whole"});
     }
+  }
+
+  // The slot tells the last commit. Where it does not, and something lies behind the last that was
+  // found, a later one may have been destroyed together with the slot.
+  void check_slot() {
+    if (walk_.file_size <= std::max(walk_.end, walk_.head.frame.end() + kPage)) return;
+    const std::uint64_t place = walk_.head.frame.end();
+    if (walk_.commits.empty() && is_unwritten_slot(file_, walk_.file_size, place, walk_.uuid())) {
+      return;
+    }
+    const std::uint64_t known =
+        walk_.commits.empty() ? 0 : walk_.commits.back().frame.prefix.sequence;
+    const auto records = read_slot(file_, walk_.file_size, place, walk_.uuid());
+    if (known > 0 && !records.empty() && records.front().sequence >= known) return;
+    lose({place, "SLOT", {}, {}, 0, 0,
+          fmt::format("it does not tell whether a pass was committed behind byte {}", walk_.end)});
   }
 
   void finish() {

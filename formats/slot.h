@@ -27,4 +27,8 @@ struct SlotRecord {
 [[nodiscard]] std::vector<SlotRecord> read_slot(const File& file, std::uint64_t file_size,
                                                 std::uint64_t offset, const Uuid& uuid);
 
+// Whether no commit was ever entered.
+[[nodiscard]] bool is_unwritten_slot(const File& file, std::uint64_t file_size,
+                                     std::uint64_t offset, const Uuid& uuid);
+
 }  // namespace psf::formats

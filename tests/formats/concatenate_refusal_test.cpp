@@ -179,10 +179,11 @@ TEST_CASE("whichever write, sync, rename or close of concatenate() fails, no out
         code = error.code();
       }
     };
-    int replaced = 0, silent = 0;
+    int replaced = 0, silent = 0, closes = 0;
     cases += test::fail_each(work, [&](int n) {
       CAPTURE(over_input, n);
       if (code) CHECK(code == ErrorCode::io);
+      if (code && test::calls().failed == std::string("close")) ++closes;
       CHECK_FALSE(std::filesystem::exists(to + ".partial"));
       // Only the folder's sync comes when the output has its name, and the last close, behind one
       // that told that all is kept.
@@ -193,6 +194,7 @@ TEST_CASE("whichever write, sync, rename or close of concatenate() fails, no out
     });
     CHECK(replaced == 2);
     CHECK(silent == 1);
+    CHECK(closes == 1);  // before the rename
   }
   CAPTURE(cases);
   CHECK(cases > 30);

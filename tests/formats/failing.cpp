@@ -9,10 +9,12 @@
 namespace psf::test {
 namespace {
 
-bool fails() {
+bool fails(const char* name) {
   Calls& state = calls();
   ++state.changes;
-  return state.left >= 0 && state.left-- == 0;
+  if (state.left < 0 || state.left-- > 0) return false;
+  state.failed = name;
+  return true;
 }
 
 }  // namespace
@@ -43,7 +45,7 @@ int __wrap_rename(const char* from, const char* to);
 int __wrap_close(int file);
 
 ssize_t __wrap_pwritev(int file, const iovec* parts, int count, off_t offset) {
-  if (!fails()) return __real_pwritev(file, parts, count, offset);
+  if (!fails("pwritev")) return __real_pwritev(file, parts, count, offset);
   if (calls().tear) {
     static_cast<void>(::pwrite(file, parts[0].iov_base, parts[0].iov_len / 2, offset));
   }
@@ -57,19 +59,19 @@ ssize_t __wrap_pread(int file, void* out, size_t size, off_t offset) {
 }
 
 int __wrap_fdatasync(int file) {
-  if (!fails()) return calls().skip_sync ? 0 : __real_fdatasync(file);
+  if (!fails("fdatasync")) return calls().skip_sync ? 0 : __real_fdatasync(file);
   errno = EIO;
   return -1;
 }
 
 int __wrap_fsync(int file) {
-  if (!fails()) return calls().skip_sync ? 0 : __real_fsync(file);
+  if (!fails("fsync")) return calls().skip_sync ? 0 : __real_fsync(file);
   errno = EIO;
   return -1;
 }
 
 int __wrap_rename(const char* from, const char* to) {
-  if (!fails()) return __real_rename(from, to);
+  if (!fails("rename")) return __real_rename(from, to);
   errno = EROFS;
   return -1;
 }
@@ -77,7 +79,7 @@ int __wrap_rename(const char* from, const char* to) {
 // A close that fails has closed all the same.
 int __wrap_close(int file) {
   const bool writes = (::fcntl(file, F_GETFL) & O_ACCMODE) == O_RDWR;
-  const bool failing = writes && fails();
+  const bool failing = writes && fails("close");
   const int result = __real_close(file);
   if (!failing) return result;
   errno = EIO;

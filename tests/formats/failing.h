@@ -12,6 +12,7 @@ struct Calls {
   long left = -1;
   bool tear = false;  // a write that fails writes half first
   int changes = 0;    // calls of these so far
+  const char* failed = "";  // the last one that did
   std::atomic<long> reads = 0;
   bool skip_sync = false;
 };

@@ -96,12 +96,13 @@ TEST_CASE("whichever write, sync, rename or close of recover() fails, nothing is
         code = error.code();
       }
     };
-    int whole = 0, silent = 0;
+    int whole = 0, silent = 0, closes = 0;
     cases += test::fail_each(work, [&](int n) {
       CAPTURE(torn, n);
       CHECK_FALSE(std::filesystem::exists(out + ".partial"));
       CHECK(test::load(in) == bytes);
       if (code) CHECK(code == ErrorCode::io);
+      if (code && test::calls().failed == std::string("close")) ++closes;
       // The last close, behind one that told that all is kept.
       if (!code) ++silent;
       // Otherwise only where the folder could not be synced, when all is done.
@@ -114,6 +115,7 @@ TEST_CASE("whichever write, sync, rename or close of recover() fails, nothing is
     });
     CHECK(whole == 2);
     CHECK(silent == 1);
+    CHECK(closes == 1);  // before the rename
     test::calls().tear = false;
   }
   CAPTURE(cases);
