@@ -5,7 +5,6 @@
 
 #include <cstdio>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "formats/error.h"
@@ -36,11 +35,9 @@ void check_target(const std::string& path) {
 void check_head(const std::string& path, const Head& head) {
   try {
     validate(head);
+    static_cast<void>(parse_metadata(head.metadata));
   } catch (const Error& error) {
     throw Error(error.code(), fmt::format("{}: {}", path, error.what()));
-  }
-  if (!nlohmann::json::parse(head.metadata, nullptr, false).is_object()) {
-    refuse(path, "the metadata is no JSON object in UTF-8");
   }
 }
 

@@ -50,9 +50,9 @@ struct Job {
 void check_not_overwritten(const std::string& path, const std::string& output) {
   std::error_code missing;
   if (!std::filesystem::equivalent(path, Appender::partial_path(output), missing)) return;
-  throw Error(ErrorCode::usage,
-              fmt::format("{}: writing it would overwrite the input {}; give another name", output,
-                          path));
+  throw Error(
+      ErrorCode::usage,
+      fmt::format("{}: writing it would overwrite the input {}; give another name", output, path));
 }
 
 class Concatenation {

@@ -15,7 +15,7 @@
 namespace psf::formats {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
 // Metadata that paths of the same picture may differ in.
 constexpr std::array<std::string_view, 6> kFree = {"producer", "seed",  "sampler",
@@ -72,9 +72,9 @@ void check_same(const Reader& reader, const Reader& first) {
   for (const auto& item : before.items()) compare(item.key());
 }
 
-Json joined_metadata(std::span<const JoinedInput> inputs) {
+std::string joined_metadata(std::span<const JoinedInput> inputs) {
   Json metadata = metadata_of(inputs.front().reader);
-  if (inputs.size() == 1) return metadata;
+  if (inputs.size() == 1) return inputs.front().reader.head().metadata;
   Json joined = Json::array();
   for (const JoinedInput& input : inputs) {
     const Json own = metadata_of(input.reader);
@@ -85,7 +85,7 @@ Json joined_metadata(std::span<const JoinedInput> inputs) {
     joined.push_back(std::move(entry));
   }
   metadata["joined"] = std::move(joined);
-  return metadata;
+  return metadata.dump();
 }
 
 std::vector<std::string> notes_on(std::span<const JoinedInput> inputs) {
@@ -164,7 +164,7 @@ JoinedHead join_heads(std::span<const JoinedInput> inputs, const ConcatenateOpti
     joined.channels.push_back({k, written, written != channel});
     joined.head.channels.push_back(written);
   }
-  joined.head.metadata = joined_metadata(inputs).dump();
+  joined.head.metadata = joined_metadata(inputs);
   joined.notes = notes_on(inputs);
   return joined;
 }

@@ -98,7 +98,7 @@ class Recovery {
   RecoverReport run(const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
     walk_ = walk_frames(file_, std::move(head_));
     committed_ = committed_end();
-    limit_ = options_.uncommitted ? walk_.file_size : committed_;
+    limit_ = options_.uncommitted ? walk_.file_size : std::min(committed_, walk_.file_size);
     drop_behind(walk_, limit_);
     check_all_frames();
     check_metadata();
@@ -125,16 +125,14 @@ class Recovery {
   }
 
   // Where what was committed ends: behind the last commit, or where the slot says that a later one
-  // stood.
+  // stood, be it past the end of a file that was cut.
   [[nodiscard]] std::uint64_t committed_end() const {
     const std::uint64_t known =
         walk_.commits.empty() ? 0 : walk_.commits.back().frame.prefix.sequence;
     std::uint64_t end = walk_.end;
     for (const SlotRecord& record :
          read_slot(file_, walk_.file_size, walk_.head.frame.end(), walk_.uuid())) {
-      if (record.sequence > known) {
-        end = std::max(end, std::min(record.offset, walk_.file_size));
-      }
+      if (record.sequence > known) end = std::max(end, record.offset);
     }
     return end;
   }
@@ -205,7 +203,7 @@ class Recovery {
     for (const Prefix& frame : walk_.frames) {
       if (frame.offset == place) place += frame.length;
     }
-    if (place < committed_ || committed_ == walk_.file_size) {
+    if (place < committed_) {
       lose({place, "", {}, {}, 0, 0, "a pass was committed behind here and is not whole"});
     }
   }
@@ -222,7 +220,12 @@ class Recovery {
         walk_.commits.empty() ? 0 : walk_.commits.back().frame.prefix.sequence;
     const auto records = read_slot(file_, walk_.file_size, place, walk_.uuid());
     if (known > 0 && !records.empty() && records.front().sequence >= known) return;
-    lose({place, "SLOT", {}, {}, 0, 0,
+    lose({place,
+          "SLOT",
+          {},
+          {},
+          0,
+          0,
           fmt::format("it does not tell whether a pass was committed behind byte {}", walk_.end)});
   }
 
@@ -269,7 +272,7 @@ class Recovery {
   RecoverOptions options_;
   HeadFrame head_;
   Walk walk_;
-  std::uint64_t committed_ = 0;  // where what was committed ends
+  std::uint64_t committed_ = 0;  // see committed_end()
   std::uint64_t limit_ = 0;      // what lies from here on is not taken
   std::unique_ptr<Appender> appender_;
   RecoverReport report_;

@@ -10,7 +10,7 @@
 namespace psf::render {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;
 
 // Of a setting that shapes the paths and that the metadata do not tell.
 Json unlisted_settings(const RenderSettings& settings) {

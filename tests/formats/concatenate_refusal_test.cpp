@@ -85,7 +85,9 @@ TEST_CASE("another scene, picture or schema is refused by name") {
     return two.refusal(ErrorCode::bad_input);
   };
   CHECK(has(schema([](Head& h) { h.channels.pop_back(); }), "as number 9 none, not noise u64 x 1"));
-  CHECK(has(schema([](Head& h) { h.channels.push_back({"more", Type::u8, 1}); }),
+  CHECK(has(schema([](Head& h) {
+              h.channels.push_back({"more", Type::u8, 1});
+            }),
             "as number 10 more u8 x 1, not none"));
   CHECK(has(schema([](Head& h) { h.channels[3].type = Type::f16; }), "reflectance f16 x 3, not"));
   CHECK(has(schema([](Head& h) { h.minor = 1; }), "another version"));

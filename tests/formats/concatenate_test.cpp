@@ -43,8 +43,8 @@ struct Parts {
   }
   const test::WithoutSync fast;
   const test::Scratch scratch;
-  const std::string a = scratch.path("a.pvb"), b = scratch.path("b.pvb"),
-                    c = scratch.path("c.pvb"), out = scratch.path("out.pvb");
+  const std::string a = scratch.path("a.pvb"), b = scratch.path("b.pvb"), c = scratch.path("c.pvb"),
+                    out = scratch.path("out.pvb");
 };
 
 ConcatenateReport join(const std::vector<std::string>& inputs, const std::string& out,
@@ -221,8 +221,8 @@ TEST_CASE("what is too large for f16 is counted") {
   const Parts parts;
   Head head;
   head.channels = {{"hit_distance", Type::f32, 1}};
-  const std::array<float, 6> values = {65504.0f, 65519.0f, 65520.0f, -1e30f,
-                                       std::numeric_limits<float>::infinity(), NAN};
+  const std::array<float, 6> values = {
+      65504.0f, 65519.0f, 65520.0f, -1e30f, std::numeric_limits<float>::infinity(), NAN};
   {
     Writer writer(parts.out, head, {Codec::raw, false, {}});
     const std::array<const void*, 1> columns = {values.data()};

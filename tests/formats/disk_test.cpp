@@ -18,9 +18,9 @@ namespace {
 
 // Runs `commands` with a disk of `kilobytes` mounted on `folder`. The exit code.
 int on_small_disk(std::size_t kilobytes, const std::string& folder, const std::string& commands) {
-  const std::string script = fmt::format(
-      "mount -t tmpfs -o size={}k none '{}' && cd '{}' && {{ {}; }}", kilobytes, folder, folder,
-      commands);
+  const std::string script =
+      fmt::format("mount -t tmpfs -o size={}k none '{}' && cd '{}' && {{ {}; }}", kilobytes, folder,
+                  folder, commands);
   const int status =
       std::system(fmt::format("unshare -rm sh -c \"{}\" 2>/dev/null", script).c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;

@@ -10,8 +10,8 @@ struct Calls {
   // Of pwritev, fdatasync, rename, fsync and close of what is open to write: how many go well
   // before one fails; negative: none fails.
   long left = -1;
-  bool tear = false;  // a write that fails writes half first
-  int changes = 0;    // calls of these so far
+  bool tear = false;        // a write that fails writes half first
+  int changes = 0;          // calls of these so far
   const char* failed = "";  // the last one that did
   std::atomic<long> reads = 0;
   bool skip_sync = false;

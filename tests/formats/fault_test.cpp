@@ -175,8 +175,7 @@ std::size_t shuffle_pages(Codec codec, std::size_t count) {
 }  // namespace
 
 TEST_CASE("one flipped bit never gives a wrong value, and check names it") {
-  const std::size_t flips =
-      flip_bits(Codec::raw, 131, 0) + flip_bits(Codec::zstd, 131, 7);
+  const std::size_t flips = flip_bits(Codec::raw, 131, 0) + flip_bits(Codec::zstd, 131, 7);
   CHECK(flips > 4000);
 }
 

@@ -139,8 +139,8 @@ void kill_writers(int kills, Codec codec) {
   for (int k = 0; k < kills; ++k) {
     // At most 60 passes a life, so that the file stays small; now and then as fast as it can.
     const std::string last = std::to_string(before + 60);
-    const WriterProcess writer({path, codec_name, last, k % 3 == 0 ? "0" : "300",
-                                k % 4 == 0 ? "sync" : "nosync"});
+    const WriterProcess writer(
+        {path, codec_name, last, k % 3 == 0 ? "0" : "300", k % 4 == 0 ? "sync" : "nosync"});
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 20'000));
     writer.kill();
     killed += writer.wait() == -SIGKILL;

@@ -58,11 +58,11 @@ void store(std::vector<std::byte>& out, T value) {
 formats::Head numbered_head() {
   formats::Head head;
   head.chunk_capacity = kNumberedCapacity;
-  head.channels = {{"number", Type::u64, 1},       {"position", Type::f32, 3},
-                   {"normal", Type::f32, 3},       {"reflectance", Type::f32, 3},
-                   {"throughput", Type::f32, 3},   {"contribution", Type::f32, 3},
-                   {"distance", Type::f32, 1},     {"pixel", Type::u32, 1},
-                   {"flags", Type::u8, 1},         {"noise", Type::u64, 1}};
+  head.channels = {{"number", Type::u64, 1},     {"position", Type::f32, 3},
+                   {"normal", Type::f32, 3},     {"reflectance", Type::f32, 3},
+                   {"throughput", Type::f32, 3}, {"contribution", Type::f32, 3},
+                   {"distance", Type::f32, 1},   {"pixel", Type::u32, 1},
+                   {"flags", Type::u8, 1},       {"noise", Type::u64, 1}};
   formats::Metadata metadata;
   metadata.producer = "numbered";
   metadata.scene_hash = "5eed";

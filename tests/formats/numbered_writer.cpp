@@ -50,8 +50,8 @@ int main(int argc, char** argv) {
   const std::string path = argv[1];
   const std::uint64_t last = std::strtoull(argv[3], nullptr, 10);
   const auto pause = static_cast<unsigned>(std::atoi(argv[4]));
-  const WriterOptions options{argv[2] == std::string("raw") ? Codec::raw : Codec::zstd,
-                              argv[5] == std::string("sync"), {}};
+  const WriterOptions options{
+      argv[2] == std::string("raw") ? Codec::raw : Codec::zstd, argv[5] == std::string("sync"), {}};
   std::uint64_t passes = 0;
   try {
     std::printf("ready\n");

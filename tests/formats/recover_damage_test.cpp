@@ -78,10 +78,15 @@ class Judge {
     if (std::filesystem::exists(out_ + ".partial")) FAIL("left a temporary file");
   }
 
-  // Records of committed chunks that stand where they stood, byte for byte.
+  // Records of committed chunks that stand where they stood, byte for byte. Without the slot a last
+  // commit that is lost too leaves no trace: then not those of the last pass.
   [[nodiscard]] std::uint64_t untouched(const test::Bytes& bytes) const {
+    const bool slot = bytes.size() >= 8192 &&
+                      std::equal(bytes.begin() + 4096, bytes.begin() + 8192, whole_.begin() + 4096);
+    const std::uint64_t proven = slot ? kRecords : kRecords - test::kNumberedPass;
     std::uint64_t records = 0;
     for (const test::FramePlace& chunk : chunks_) {
+      if (test::get(whole_, chunk.offset + 64, 8) >= proven) continue;
       const auto begin = static_cast<std::ptrdiff_t>(chunk.offset);
       const auto end = begin + static_cast<std::ptrdiff_t>(chunk.length);
       if (end <= static_cast<std::ptrdiff_t>(bytes.size()) &&

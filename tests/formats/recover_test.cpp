@@ -88,7 +88,8 @@ void destroy_head(std::size_t step) {
   Case c(Codec::raw);
   const std::size_t front = 64 + test::get(c.whole, 56, 4);
   std::size_t cases = 0;
-  for (std::size_t place = 0; place <= front; place += place < front ? std::min(step, front - place) : 1) {
+  for (std::size_t place = 0; place <= front;
+       place += place < front ? std::min(step, front - place) : 1) {
     CAPTURE(place);
     if (place < front) {
       c.bytes.at(place) ^= static_cast<std::byte>(1u << place % 8);
@@ -254,4 +255,15 @@ TEST_CASE("a file whose only pass was never committed gives its records where as
   const RecoverReport report = c.run({true});
   CHECK(report.nothing_lost());
   CHECK(test::holds_passes(Reader(c.out), 1));
+}
+
+TEST_CASE("where slot and last commit are both lost, nobody says that nothing is") {
+  Case c(Codec::raw, false);
+  c.flip(4096 + 5);
+  c.flip(test::frames(c.whole, "CMIT").back().offset + 70);
+  const RecoverReport report = c.run();
+  CHECK_FALSE(report.nothing_lost());
+  CHECK(report.losses.back().frame == "SLOT");
+  CHECK(report.records_saved == kRecords - test::kNumberedPass);
+  CHECK(test::holds_passes(Reader(c.out), kPasses - 1));
 }

@@ -48,7 +48,8 @@ TEST_CASE("another schema or scene is refused, and the file is unchanged") {
     change(head);
     return refusal(path, head, ErrorCode::bad_input);
   };
-  CHECK(has(said([](Head& h) { h.channels.pop_back(); }), "as number 9 noise u64 x 1, not nothing"));
+  CHECK(
+      has(said([](Head& h) { h.channels.pop_back(); }), "as number 9 noise u64 x 1, not nothing"));
   CHECK(has(said([](Head& h) { h.channels.push_back({"more", Type::u8, 1}); }), "not more u8 x 1"));
   CHECK(has(said([](Head& h) { h.channels[1].name = "place"; }), "not place f32 x 3"));
   CHECK(has(said([](Head& h) { h.channels[1].type = Type::f64; }), "not position f64 x 3"));

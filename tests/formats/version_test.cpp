@@ -4,10 +4,10 @@
 #include "catch.h"
 #include "file_bytes.h"
 #include "formats/check.h"
+#include "formats/concatenate.h"
 #include "formats/error.h"
 #include "formats/reader.h"
 #include "formats/recover.h"
-#include "formats/concatenate.h"
 #include "golden.h"
 #include "golden_versions.h"
 

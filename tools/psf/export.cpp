@@ -1,6 +1,5 @@
 // psf export: writes a dump in the formats of other programs.
 #include "study/export.h"
-#include "text.h"
 
 #include <fmt/format.h>
 
@@ -21,6 +20,7 @@
 #include "formats/reader.h"
 #include "option_values.h"
 #include "pass_range.h"
+#include "text.h"
 #include "verbs.h"
 
 namespace psf::tools {
@@ -152,8 +152,7 @@ void add_export(CLI::App& app) {
       ->allow_extra_args(false)
       ->delimiter(',')
       ->type_name("NAME,...");
-  command->add_option("--passes", options.passes, kPassesHelp)
-      ->type_name("FIRST:LAST");
+  command->add_option("--passes", options.passes, kPassesHelp)->type_name("FIRST:LAST");
   add_number(*command, "--every", options.every, std::uint64_t{1}, std::uint64_t{1} << 40,
              "only every N-th record; an odd N leaves no stripes");
   command

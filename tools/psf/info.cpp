@@ -231,7 +231,7 @@ nlohmann::ordered_json to_json(const formats::Reader& reader,
           {"uncommitted_bytes", reader.uncommitted_bytes()},
           {"passes", std::move(passes)},
           {"channels", std::move(channels)},
-          {"metadata", Json::parse(reader.head().metadata)}};
+          {"metadata", Json(nlohmann::json::parse(reader.head().metadata))}};
 }
 
 formats::Metadata metadata_of(const formats::Reader& reader) {
