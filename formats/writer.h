@@ -16,7 +16,7 @@ enum class Codec : std::uint8_t { raw = 0, zstd = 1 };
 
 struct WriterOptions {
   Codec codec =
-      Codec::zstd;   // zstd: level 1 behind a 4-byte shuffle, for each column that it makes smaller
+      Codec::zstd;   // zstd behind a 4-byte shuffle, for each column that it makes smaller
   bool sync = true;  // fdatasync before and after each commit
   std::optional<Uuid> uuid;  // of the file; random unless given
 };
