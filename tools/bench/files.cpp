@@ -135,6 +135,10 @@ void add_files(CLI::App& app) {
       ->add_option("--scene", options->render.scene,
                    "also render this scene with and without a dump")
       ->type_name("FILE");
+  command
+      ->add_option("--render-options", options->render.options,
+                   "more for psf-render, \"--sky 1,1,1 --size 512x512\"")
+      ->type_name("TEXT");
   command->add_option("--passes", options->render.passes, "of each render")
       ->check(CLI::Range(1, 65536))
       ->capture_default_str();

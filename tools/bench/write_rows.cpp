@@ -10,6 +10,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <sstream>
 
 #include "formats/error.h"
 #include "formats/reader.h"
@@ -86,6 +88,8 @@ Render render(const RenderRun& run, bool dump) {
                                         "--json",    figures,
                                         "--image",   folder / "render.exr"};
   if (dump) arguments.insert(arguments.end(), {"-o", file});
+  std::istringstream words(run.options);
+  arguments.insert(arguments.end(), std::istream_iterator<std::string>(words), {});
   std::filesystem::remove(file);
   const double processor = run_program(program, arguments);
   const auto json = nlohmann::json::parse(std::ifstream(figures));

@@ -16,6 +16,7 @@ namespace psf::bench {
 
 struct RenderRun {
   std::string scene;
+  std::string options;  // more of psf-render's, separated by spaces
   std::size_t passes = 16;
   std::size_t threads = 0;  // 0: all cores
   std::string folder;       // for what it writes
