@@ -33,8 +33,8 @@ struct ConcatenateReport {
 // first input; of several, `joined` tells uuid, seed, producer and passes of each. One input with
 // all its passes keeps its resume state. Columns that stay as they are are copied as stored.
 // Throws Error{bad_input} where the inputs are not of the same scene, cameras and channels, or one
-// is damaged; Error{usage} naming a channel or pass that there is not; Error{io}. `progress(done,
-// total)` in records, from the calling thread; may throw to stop.
+// is damaged or lacks a channel; Error{usage} naming passes that there are not; Error{io}.
+// `progress(done, total)` in records, from the calling thread; may throw to stop.
 [[nodiscard]] ConcatenateReport concatenate(
     std::span<const std::string> inputs, const std::string& output,
     const ConcatenateOptions& options = {},

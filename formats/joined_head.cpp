@@ -126,8 +126,8 @@ void check_names(const Reader& reader, std::span<const std::string> names) {
     if (reader.head().find(name)) continue;
     std::vector<std::string> known;
     for (const Channel& channel : reader.head().channels) known.push_back(channel.name);
-    throw Error(ErrorCode::usage, fmt::format("{}: has no channel {}; it has {}", reader.path(),
-                                              name, fmt::join(known, ", ")));
+    throw Error(ErrorCode::bad_input, fmt::format("{}: has no channel {}; it has {}", reader.path(),
+                                                  name, fmt::join(known, ", ")));
   }
 }
 

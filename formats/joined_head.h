@@ -33,7 +33,7 @@ struct JoinedHead {
 };
 
 // Throws Error{bad_input} naming the file that is not of the same scene, channels, cameras or way
-// of rendering as the first, Error{usage} naming a channel that there is not, or that cannot be
+// of rendering as the first, or that lacks a channel, Error{usage} naming one that cannot be
 // dropped or quantised.
 [[nodiscard]] JoinedHead join_heads(std::span<const JoinedInput> inputs,
                                     const ConcatenateOptions& options);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
-#include <numeric>
 #include <type_traits>
 
 #include "core/error.h"
@@ -84,11 +83,7 @@ void append(fmt::memory_buffer& out, const Column& column, std::size_t record) {
 ExportOutcome export_csv(const formats::Reader& reader, const ExportSelection& selection,
                          const std::string& path, const ExportProgress& progress) {
   const ExportRecords records(reader, selection);
-  std::vector<std::size_t> channels = records.find(selection.channels);
-  if (channels.empty()) {
-    channels.resize(reader.head().channels.size());
-    std::iota(channels.begin(), channels.end(), std::size_t{0});
-  }
+  const std::vector<std::size_t> channels = records.find_or_all(selection.channels);
   ExportOutcome outcome;
   outcome.records = outcome.written = records.size();
   outcome.passes = records.passes();

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -120,11 +119,7 @@ class OutputFolder {
 ExportOutcome export_npy(const formats::Reader& reader, const ExportSelection& selection,
                          const std::string& folder, const ExportProgress& progress) {
   const ExportRecords records(reader, selection);
-  std::vector<std::size_t> channels = records.find(selection.channels);
-  if (channels.empty()) {
-    channels.resize(reader.head().channels.size());
-    std::iota(channels.begin(), channels.end(), std::size_t{0});
-  }
+  const std::vector<std::size_t> channels = records.find_or_all(selection.channels);
   ExportOutcome outcome;
   outcome.records = outcome.written = records.size();
   outcome.passes = records.passes();

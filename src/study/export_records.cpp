@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
 #include "core/error.h"
 
@@ -61,6 +62,13 @@ std::vector<std::size_t> ExportRecords::find(std::span<const std::string> names)
     if (std::find(places.begin(), places.end(), *place) == places.end()) places.push_back(*place);
   }
   return places;
+}
+
+std::vector<std::size_t> ExportRecords::find_or_all(std::span<const std::string> names) const {
+  if (!names.empty()) return find(names);
+  std::vector<std::size_t> channels(reader_.head().channels.size());
+  std::iota(channels.begin(), channels.end(), std::size_t{0});
+  return channels;
 }
 
 void ExportRecords::read(std::size_t channel, std::uint64_t k, std::size_t count,

@@ -33,6 +33,8 @@ class ExportRecords {
 
   // Channels by name, in the order given; Error{bad_input} that lists those of the file.
   [[nodiscard]] std::vector<std::size_t> find(std::span<const std::string> names) const;
+  // The same; without names all channels of the file.
+  [[nodiscard]] std::vector<std::size_t> find_or_all(std::span<const std::string> names) const;
 
   // Selected records [k, k + count) as stored, or as floats (f16, f32, f64, octahedral).
   void read(std::size_t channel, std::uint64_t k, std::size_t count,

@@ -116,14 +116,16 @@ TEST_CASE("paths may be of another seed or sampler; the same ones twice are note
 
 TEST_CASE("channels and passes that there are not are refused by name") {
   const Two two;
-  const auto with = [&](const auto& change) {
+  const auto with = [&](const auto& change, ErrorCode code = ErrorCode::usage) {
     ConcatenateOptions options;
     change(options);
-    return two.refusal(ErrorCode::usage, options);
+    return two.refusal(code, options);
   };
-  CHECK(has(with([](auto& o) { o.drop = {"motion"}; }), "has no channel motion; it has number, "));
-  CHECK(has(with([](auto& o) { o.channels = {"motion"}; }), "has no channel motion"));
-  CHECK(has(with([](auto& o) { o.quantize = {"motion"}; }), "has no channel motion"));
+  const ErrorCode lacking = ErrorCode::bad_input;
+  CHECK(has(with([](auto& o) { o.drop = {"motion"}; }, lacking),
+            "has no channel motion; it has number, "));
+  CHECK(has(with([](auto& o) { o.channels = {"motion"}; }, lacking), "has no channel motion"));
+  CHECK(has(with([](auto& o) { o.quantize = {"motion"}; }, lacking), "has no channel motion"));
   CHECK(has(with([](auto& o) { o.quantize = {"pixel"}; }), "channel pixel is u32"));
   CHECK(has(with([](auto& o) { o.drop = {"position"}; }), "channel position cannot be dropped"));
   CHECK(has(with([](auto& o) { o.last_pass = 4; }), "passes 0:4 are no part of the 3"));

@@ -147,7 +147,7 @@ TEST_CASE("every mistake is one line, has its exit code and leaves nothing behin
       {"psf cat FOLDER/good.pvb FOLDER/lacking.pvb -o FOLDER/x.pvb", 3, "it has other channels"},
       {"psf cat FOLDER/good.pvb FOLDER/text.pvb -o FOLDER/x.pvb", 3, "is no path-vertex buffer"},
       {"psf cat FOLDER/good.pvb -o FOLDER/x.pvb --drop pixel", 2, "cannot be dropped"},
-      {"psf cat FOLDER/good.pvb -o FOLDER/x.pvb --drop pixle", 2, "has no channel pixle"},
+      {"psf cat FOLDER/good.pvb -o FOLDER/x.pvb --drop pixle", 3, "has no channel pixle"},
       {"psf cat FOLDER/good.pvb -o FOLDER/x.pvb --quantize flags", 2, "only f32"},
       {"psf cat FOLDER/good.pvb -o FOLDER/x.pvb --passes 2:3", 2, "passes 2:3 are no part"},
       {"psf cat FOLDER/good.pvb -o FOLDER/x.pvb --codec lz4", 2, "--codec"},
