@@ -11,11 +11,13 @@
 
 namespace psf::formats {
 namespace {
+
 // Of zstd. Measured on 262,144 records of the Cornell box behind the shuffle, one thread: level 1
-// packs 1.6 GB/s to 0.284 and unpacks 2.0 GB/s, -1 packs 2.6 to 0.307 and unpacks 2.75, -4 packs 2.9
-// to 0.314. A dump is written in the renderer's time and read many times. Writing costs a render 8%
-// in the Cornell box, whose paths take 1.4 us each (10% with level 1), and 3% in Sponza: a third of
-// it is zstd, a fifth the shuffle, which waits for the other core's cache, a fifth the system's copy.
+// packs 1.6 GB/s to 0.284 and unpacks 2.0 GB/s, -1 packs 2.6 to 0.307 and unpacks 2.75, -4
+// packs 2.9 to 0.314. A dump is written in the renderer's time and read many times. Writing costs a
+// render 6.5% in the Cornell box, whose paths take 1.4 us each (10.5% with level 1), and 4.5% in
+// Sponza: nearly half of it is zstd, a quarter the shuffle, which waits for the other core's cache,
+// a fifth the system's copy.
 constexpr int kLevel = -1;
 
 struct ContextDeleter {
