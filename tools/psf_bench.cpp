@@ -10,5 +10,6 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   psf::tools::set_example(app, "psf-bench files");
   psf::bench::add_files(app);
+  psf::bench::add_filter(app);
   return psf::tools::run_tool(app, argc, argv);
 }

@@ -3,8 +3,13 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
+#include <cassert>
+#include <exception>
+#include <utility>
 
 namespace psf::core {
 
@@ -14,6 +19,42 @@ void parallel_for(std::size_t count, std::size_t grain,
       std::size_t{0}, range_count(count, grain),
       [&](std::size_t range) { body(range * grain, std::min(count, (range + 1) * grain)); },
       tbb::simple_partitioner{});
+}
+
+struct Aside::State {
+  tbb::task_group group;
+  // Kept here: an exception that reached the group would cancel what it is part of.
+  std::exception_ptr error;
+  bool started = false;
+};
+
+Aside::Aside() : state_(std::make_unique<State>()) {}
+Aside::~Aside() {
+  state_->group.wait();
+}
+
+void Aside::start(std::function<void()> work) {
+  assert(!state_->started);
+  state_->started = true;
+  state_->group.run([state = state_.get(), work = std::move(work)] {
+    try {
+      work();
+    } catch (...) {
+      state->error = std::current_exception();
+    }
+  });
+}
+
+void Aside::wait() {
+  state_->group.wait();
+  state_->started = false;
+  if (const std::exception_ptr error = std::exchange(state_->error, nullptr)) {
+    std::rethrow_exception(error);
+  }
+}
+
+void undisturbed(const std::function<void()>& body) {
+  tbb::this_task_arena::isolate(body);
 }
 
 struct ThreadLimit::State {

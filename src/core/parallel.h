@@ -17,6 +17,30 @@ void parallel_for(std::size_t count, std::size_t grain,
   return (count + grain - 1) / grain;
 }
 
+// Work that goes on beside the caller's, one piece at a time, on a thread that has nothing else to
+// do.
+class Aside {
+ public:
+  Aside();
+  ~Aside();  // waits; what the work throws is lost
+  Aside(const Aside&) = delete;
+  Aside& operator=(const Aside&) = delete;
+
+  // Where there is but one thread it is wait() that does the work. Not before the last piece was
+  // waited for.
+  void start(std::function<void()> work);
+  // Until it is done, helping; throws what it threw. Nothing where none was started.
+  void wait();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// Calls `body`, whose parallel loops leave work of an Aside to other threads: so it takes no longer
+// than its own work.
+void undisturbed(const std::function<void()>& body);
+
 // Bounds the threads of every parallel loop while it lives. threads = 0: all cores.
 class ThreadLimit {
  public:

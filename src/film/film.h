@@ -9,8 +9,8 @@
 
 namespace psf::film {
 
-// Sums in double, so that the mean of millions of paths is exact to float. Add from one thread, in
-// path order: then the picture is the same bytes for any number of threads.
+// Sums in double, so that the mean of millions of paths is exact to float. Add a pixel's paths from
+// one thread, in path order: then the picture is the same bytes for any number of threads.
 class Film {
  public:
   Film(std::size_t width, std::size_t height)

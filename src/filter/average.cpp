@@ -4,12 +4,14 @@
 #include <memory>
 
 #include "core/error.h"
-#include "filter/plain.h"
+#include "core/parallel.h"
+#include "filter/problem.h"
 #include "filter/values.h"
-#include "search/curve_order.h"
 
 namespace psf::filter {
 namespace {
+
+constexpr std::size_t kGrain = 4096;
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
@@ -31,14 +33,6 @@ void require_channels(const Records& records, const Parameters& parameters) {
     throw Error(ErrorCode::bad_input, "the records have no channel " + std::string(need.channel) +
                                           ", which " + std::string(need.wanted_by) + " needs");
   }
-}
-
-std::unique_ptr<search::Search> index_of(const Records& records, const Roles& roles,
-                                         search::Kind kind) {
-  std::vector<Vec3> positions;
-  positions.reserve(roles.sources.size());
-  for (const std::uint32_t j : roles.sources) positions.push_back(records.position[j]);
-  return search::make_search(kind, positions);
 }
 
 std::vector<float> areas(const Records& records, const Roles& roles, const Block& block) {
@@ -68,7 +62,8 @@ std::vector<Rgb> demodulated(const Records& records, const Roles& roles) {
 // Back from the values averaged to radiance.
 void finish(const Records& records, const Roles& roles, std::span<const float> radius,
             const Parameters& parameters, Average& result) {
-  for (const std::uint32_t i : roles.queries) {
+  const std::span<const std::uint32_t> queries = roles.queries;
+  const auto finish_one = [&](std::uint32_t i) {
     // Who averaged over itself alone keeps its own value, which dividing and multiplying would
     // round.
     const bool alone = result.neighbors[i] == 1 && roles.of[i] == Role::source;
@@ -77,7 +72,10 @@ void finish(const Records& records, const Roles& roles, std::span<const float> r
     } else if (parameters.demodulate) {
       result.c_bar[i] = remodulate(result.c_bar[i], records.reflectance[i]);
     }
-  }
+  };
+  core::parallel_for(queries.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (const std::uint32_t i : queries.subspan(begin, end - begin)) finish_one(i);
+  });
 }
 
 void leave_out_queries(Average& result) {
@@ -102,25 +100,23 @@ Average average(const Records& records, std::span<const float> radius, const Blo
     leave_out_queries(result);
     return result;
   }
-  const std::unique_ptr<search::Search> search = index_of(records, roles, parameters.search);
-  const std::vector<std::uint32_t> order = search::curve_order(records.position, roles.queries);
   const bool disk = parameters.estimator == Estimator::disk;
   const std::vector<float> area = disk ? areas(records, roles, block) : std::vector<float>();
   const Weights weights(records, parameters.weights);
+  const Problem problem{records, roles, radius, weights, area};
+  const std::unique_ptr<Engine> engine = make_engine(parameters.search, problem);
   result.statistics.seconds_index = seconds_since(start);
 
   const auto filter_start = Clock::now();
-  Problem problem{records, roles, radius, order, *search, weights, area, parameters.count_refusals};
   std::vector<Rgb> previous;
   if (parameters.demodulate) previous = demodulated(records, roles);
-  std::span<const Rgb> values = parameters.demodulate ? previous : records.contribution;
-  plain_average(problem, values, result.c_bar, result.neighbors, result.statistics);
-  problem.count_refusals = false;
+  engine->average(parameters.demodulate ? previous : records.contribution,
+                  parameters.count_refusals, result.c_bar, result.neighbors, result.statistics);
   for (std::uint32_t k = 1; k < parameters.iterations; ++k) {
     std::swap(previous, result.c_bar);
     result.c_bar.resize(records.size(), Rgb(0, 0, 0));
     Statistics repeated;  // the same neighbours: counted once
-    plain_average(problem, previous, result.c_bar, result.neighbors, repeated);
+    engine->average(previous, false, result.c_bar, result.neighbors, repeated);
   }
   finish(records, roles, radius, parameters, result);
   result.roles = std::move(roles.of);

@@ -1,49 +1,40 @@
 #include "filter/orphans.h"
 
-#include <algorithm>
+#include "filter/sum.h"
 
 namespace psf::filter {
 namespace {
 
-constexpr std::size_t kFirstReach = 16, kLastReach = 1024;
+constexpr std::size_t kFirstReach = 16, kGrowth = 8;
 
 }  // namespace
 
-bool adopt(const search::Search& search, const Records& records,
-           const std::vector<std::uint32_t>& sources, const Weights& weights, std::uint32_t i,
-           float r_i, std::vector<search::Neighbor>& scratch, std::vector<std::uint32_t>& out) {
-  const Vec3 x_i = records.position[i];
-  out.clear();
-  std::uint32_t nearest = 0;
-  for (std::size_t k = kFirstReach; k <= kLastReach; k *= 4) {
-    search.nearest(x_i, k, scratch);
-    nearest = sources[scratch.front().index];
-    for (const search::Neighbor& candidate : scratch) {
-      const std::uint32_t j = sources[candidate.index];
-      if (weights.pass(i, j, r_i)) out.push_back(j);
-      if (out.size() == kOrphanSources) break;
+Adopted adopt(const search::Search& search, const Problem& problem, std::uint32_t i) {
+  Adopted adopted;
+  std::vector<search::Neighbor> nearest;
+  for (std::size_t reach = kFirstReach;; reach *= kGrowth) {
+    search.nearest(problem.records.position[i], reach, nearest);
+    adopted.sources.clear();
+    for (const search::Neighbor& candidate : nearest) {
+      const std::uint32_t j = problem.roles.sources[candidate.index];
+      if (problem.weights.pass(i, j, problem.radius[i])) adopted.sources.push_back(j);
+      if (adopted.sources.size() == kOrphanSources) return adopted;
     }
-    if (!out.empty()) return true;
-    if (k >= sources.size()) break;
+    if (reach >= search.size()) break;
   }
-  // All the others: one walk over the sources costs less than ever more nearest ones.
-  scratch.clear();
-  for (std::size_t s = 0; sources.size() > kLastReach && s < sources.size(); ++s) {
-    const std::uint32_t j = sources[s];
-    if (!weights.pass(i, j, r_i)) continue;
-    scratch.push_back(
-        {static_cast<std::uint32_t>(s), search::distance_sq(x_i, records.position[j])});
+  if (adopted.sources.empty()) {
+    adopted.sources.push_back(problem.roles.sources[nearest.front().index]);
+    adopted.matched = false;
   }
-  const auto closer = [](const search::Neighbor& a, const search::Neighbor& b) {
-    return a.d_sq != b.d_sq ? a.d_sq < b.d_sq : a.index < b.index;
-  };
-  const std::size_t count = std::min(kOrphanSources, scratch.size());
-  std::partial_sort(scratch.begin(), scratch.begin() + static_cast<std::ptrdiff_t>(count),
-                    scratch.end(), closer);
-  for (std::size_t s = 0; s < count; ++s) out.push_back(sources[scratch[s].index]);
-  if (!out.empty()) return true;
-  out.push_back(nearest);
-  return false;
+  return adopted;
+}
+
+Rgb average_of(const Adopted& adopted, std::span<const Rgb> values, Statistics& statistics) {
+  ++statistics.orphans;
+  if (!adopted.matched) ++statistics.orphans_unmatched;
+  Sum sum;
+  for (const std::uint32_t j : adopted.sources) sum.add(values[j], 1);
+  return sum.over(static_cast<double>(adopted.sources.size()));
 }
 
 }  // namespace psf::filter

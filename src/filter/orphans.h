@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "filter/roles.h"
-#include "filter/weights.h"
+#include "filter/problem.h"
 #include "search/search.h"
 
 namespace psf::filter {
@@ -13,13 +13,18 @@ namespace psf::filter {
 // An orphan averages at most this many sources.
 inline constexpr std::size_t kOrphanSources = 4;
 
-// The kOrphanSources nearest of the sources that pass the weights among the k nearest of all, ties
-// by the lower record; k is the first of 16, 64, 256, 1024 and all of them that holds one which
-// passes. Where no source of the block passes: the nearest, and false. `search` holds the positions
-// of `sources`, at least one.
-[[nodiscard]] bool adopt(const search::Search& search, const Records& records,
-                         const std::vector<std::uint32_t>& sources, const Weights& weights,
-                         std::uint32_t i, float r_i, std::vector<search::Neighbor>& scratch,
-                         std::vector<std::uint32_t>& out);
+// What an orphan averages: the kOrphanSources nearest of the sources that pass the weights, ties by
+// the lower record. Where none passes: the nearest of all, and not `matched`.
+struct Adopted {
+  std::vector<std::uint32_t> sources;  // record numbers, nearest first
+  bool matched = true;
+};
+
+// `search` holds the positions of the problem's sources.
+[[nodiscard]] Adopted adopt(const search::Search& search, const Problem& problem, std::uint32_t i);
+
+// Their mean, without areas: an orphan is no density. Adds to the counts of orphans.
+[[nodiscard]] Rgb average_of(const Adopted& adopted, std::span<const Rgb> values,
+                             Statistics& statistics);
 
 }  // namespace psf::filter

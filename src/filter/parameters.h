@@ -25,8 +25,8 @@ enum class RadiusCount : std::uint8_t {
 };
 
 struct Radius {
-  // >= 0; 0 filters nothing. Pixels are the default because a fraction of the distance means another
-  // number of neighbours for every field of view and resolution; measured in README.md.
+  // >= 0; 0 filters nothing. Pixels are the default because a fraction of the distance means
+  // another number of neighbours for every field of view and resolution; measured in README.md.
   double r0 = 8;
   RadiusBasis basis = RadiusBasis::footprint;
   // 0 <= delta < 1. 0 keeps the radius fixed: no longer consistent, but useful to look at one
@@ -69,8 +69,8 @@ struct Parameters {
   std::uint32_t iterations = 1;  // >= 1
   std::uint32_t sources = 1;  // K >= 1: one record in K is a source, the others are queries alone
   Estimator estimator = Estimator::average;
-  search::Kind search = search::Kind::plain;
-  bool count_refusals = false;  // by term; costs the evaluation of every term for every candidate
+  search::Kind search = search::Kind::flann;
+  bool count_refusals = false;  // pairs in the balls and refusals by term; about doubles the time
 
   // Throws Error{usage} naming the parameter and what it may be.
   void validate() const;

@@ -31,6 +31,9 @@ std::string to_text(const std::optional<float>& threshold) {
 std::string to_text(bool on) {
   return on ? "on" : "off";
 }
+std::string to_text(search::Kind kind) {
+  return kind == search::Kind::flann ? "flann" : kind == search::Kind::plain ? "plain" : "brute";
+}
 
 }  // namespace
 
@@ -141,7 +144,7 @@ std::vector<std::pair<std::string, std::string>> describe(const Parameters& p) {
           {"iterations", fmt::format("{}", p.iterations)},
           {"sources", fmt::format("1/{}", p.sources)},
           {"estimator", p.estimator == Estimator::average ? "average" : "disk"},
-          {"search", p.search == search::Kind::plain ? "plain" : "brute"}};
+          {"search", to_text(p.search)}};
 }
 
 }  // namespace psf::filter

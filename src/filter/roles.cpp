@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/parallel.h"
 #include "filter/subsample.h"
 #include "filter/values.h"
 
@@ -22,6 +23,13 @@ enum Checked : std::uint32_t {
   kDirection
 };
 
+constexpr std::size_t kGrain = 4096;
+
+// One test for three: 0 times what is not finite is NaN.
+bool all_finite(const Vec3& v) {
+  return v.x * 0 + v.y * 0 + v.z * 0 == 0;
+}
+
 class Classifier {
  public:
   Classifier(const Records& records, const Block& block, const Parameters& parameters)
@@ -38,38 +46,61 @@ class Classifier {
     }
   }
 
+  // of[i] for records [begin, end), and what is counted of them.
+  void classify(std::size_t begin, std::size_t end, std::span<Role> of,
+                Statistics& statistics) const {
+    for (std::size_t i = begin; i < end; ++i) {
+      const bool vertex = (r_.flags[i] & kHasVertex) != 0;
+      const bool source = vertex && is_source(i);
+      const std::uint32_t bits = bad_channels(i, vertex, source);
+      of[i] = bits != 0 ? Role::left_out
+              : source  ? Role::source
+              : vertex  ? Role::query
+                        : Role::no_vertex;
+      if (bits != 0) count(bits, statistics);
+      statistics.queries += bits == 0 && vertex ? 1 : 0;
+      statistics.sources += bits == 0 && source ? 1 : 0;
+      statistics.without_vertex += bits == 0 && !vertex ? 1 : 0;
+    }
+    statistics.records += end - begin;
+  }
+
+ private:
   [[nodiscard]] bool is_source(std::size_t i) const {
     return (r_.flags[i] & kShaded) != 0 && (k_ == 1 || chosen(i));
+  }
+  [[nodiscard]] bool chosen(std::size_t i) const {
+    const CameraView& camera = block_.cameras[r_.camera.empty() ? 0 : r_.camera[i]];
+    const std::uint32_t x = r_.pixel[i] % camera.width, y = r_.pixel[i] / camera.width;
+    return is_chosen(x, y, (block_.first_path + i) / pixels_, k_);
+  }
+
+  static void count(std::uint32_t bits, Statistics& statistics) {
+    ++statistics.left_out;
+    for (std::size_t k = 0; k < kCheckedChannels; ++k) statistics.non_finite[k] += (bits >> k) & 1;
   }
 
   // Bit k set: the value of channel k of kCheckedNames is in use and not finite.
   [[nodiscard]] std::uint32_t bad_channels(std::size_t i, bool vertex, bool source) const {
     std::uint32_t bad = 0;
-    const auto check = [&bad](bool in_use_and_bad, Checked channel) {
-      bad |= std::uint32_t{in_use_and_bad} << channel;
+    const auto check = [&bad](bool good, Checked channel) {
+      bad |= std::uint32_t{!good} << channel;
     };
-    check(!r_.unfiltered.empty() && !is_finite(r_.unfiltered[i]), kUnfiltered);
+    check(r_.unfiltered.empty() || all_finite(r_.unfiltered[i]), kUnfiltered);
     if (!vertex) return bad;
-    check(!is_finite(r_.throughput[i]), kThroughput);
-    check(!is_finite(r_.position[i]), kPosition);
-    check(distance_ && !std::isfinite(r_.distance[i]), kDistance);
-    check(source && !is_finite(r_.contribution[i]), kContribution);
-    check(normal_ && !is_finite(r_.normal[i]), kNormal);
-    check(reflectance_ && !is_finite(r_.reflectance[i]), kReflectance);
-    check(hit_distance_ && !(r_.hit_distance[i] >= std::numeric_limits<float>::lowest()),
-          kHitDistance);
-    check(direction_ && !is_finite(r_.direction[i]), kDirection);
+    check(all_finite(r_.throughput[i]), kThroughput);
+    check(all_finite(r_.position[i]), kPosition);
+    check(!distance_ || std::isfinite(r_.distance[i]), kDistance);
+    check(!source || all_finite(r_.contribution[i]), kContribution);
+    check(!normal_ || all_finite(r_.normal[i]), kNormal);
+    check(!reflectance_ || all_finite(r_.reflectance[i]), kReflectance);
+    check(!hit_distance_ || r_.hit_distance[i] >= std::numeric_limits<float>::lowest(),
+          kHitDistance);  // +infinity is a miss
+    check(!direction_ || all_finite(r_.direction[i]), kDirection);
     if (demodulate_ && source && bad == 0) {
-      check(!is_finite(demodulate(r_.contribution[i], r_.reflectance[i])), kReflectance);
+      check(all_finite(demodulate(r_.contribution[i], r_.reflectance[i])), kReflectance);
     }
     return bad;
-  }
-
- private:
-  [[nodiscard]] bool chosen(std::size_t i) const {
-    const CameraView& camera = block_.cameras[r_.camera.empty() ? 0 : r_.camera[i]];
-    const std::uint32_t x = r_.pixel[i] % camera.width, y = r_.pixel[i] / camera.width;
-    return is_chosen(x, y, (block_.first_path + i) / pixels_, k_);
   }
 
   const Records& r_;
@@ -86,27 +117,31 @@ Roles find_roles(const Records& records, const Block& block, const Parameters& p
                  Statistics& statistics) {
   Roles roles;
   roles.of.resize(records.size());
-  roles.queries.reserve(records.size());
-  roles.sources.reserve(records.size());
   const Classifier classifier(records, block, parameters);
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    const bool vertex = (records.flags[i] & kHasVertex) != 0;
-    const bool source = vertex && classifier.is_source(i);
-    const std::uint32_t bad = classifier.bad_channels(i, vertex, source);
-    if (bad != 0) {
-      roles.of[i] = Role::left_out;
-      ++statistics.left_out;
-      for (std::size_t k = 0; k < kCheckedChannels; ++k) statistics.non_finite[k] += (bad >> k) & 1;
-      continue;
-    }
-    roles.of[i] = source ? Role::source : vertex ? Role::query : Role::no_vertex;
-    if (vertex) roles.queries.push_back(static_cast<std::uint32_t>(i));
-    if (source) roles.sources.push_back(static_cast<std::uint32_t>(i));
+  std::vector<Statistics> parts(core::range_count(records.size(), kGrain));
+  core::parallel_for(records.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    classifier.classify(begin, end, roles.of, parts[begin / kGrain]);
+  });
+  std::vector<std::size_t> first_query, first_source;
+  std::size_t queries = 0, sources = 0;
+  for (const Statistics& part : parts) {
+    first_query.push_back(queries);
+    first_source.push_back(sources);
+    queries += part.queries;
+    sources += part.sources;
+    statistics += part;
   }
-  statistics.records += records.size();
-  statistics.queries += roles.queries.size();
-  statistics.sources += roles.sources.size();
-  statistics.without_vertex = statistics.records - statistics.queries - statistics.left_out;
+  roles.queries.resize(queries);
+  roles.sources.resize(sources);
+  core::parallel_for(records.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t* query = roles.queries.data() + first_query[begin / kGrain];
+    std::uint32_t* source = roles.sources.data() + first_source[begin / kGrain];
+    for (std::size_t i = begin; i < end; ++i) {
+      const Role role = roles.of[i];
+      if (role == Role::source) *source++ = static_cast<std::uint32_t>(i);
+      if (role == Role::source || role == Role::query) *query++ = static_cast<std::uint32_t>(i);
+    }
+  });
   return roles;
 }
 

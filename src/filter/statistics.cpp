@@ -1,7 +1,5 @@
 #include "filter/statistics.h"
 
-#include <algorithm>
-
 namespace psf::filter {
 
 Statistics& Statistics::operator+=(const Statistics& other) {

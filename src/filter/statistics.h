@@ -1,6 +1,7 @@
 // What a filter run counted and how long it took; blocks add up.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -27,12 +28,13 @@ struct Statistics {
   std::array<std::uint64_t, kCheckedChannels> non_finite{};
   std::uint64_t without_source = 0;  // queries of blocks that have no source at all, left out too
 
-  std::uint64_t candidates = 0;  // pairs (i, j) with chi = 1, self included
-  std::uint64_t accepted = 0;    // of them, w_ij = 1
+  // Pairs (i, j) with chi = 1, self included, and those that a term refuses whatever the others
+  // say, by term of kTermNames; both only where `count_refusals` asks for it.
+  std::uint64_t candidates = 0;
+  std::array<std::uint64_t, kTermCount> refused{};
+  std::uint64_t accepted = 0;  // pairs with chi w_ij = 1
   std::uint64_t min_neighbors = std::numeric_limits<std::uint64_t>::max();  // of a query; accepted
   std::uint64_t max_neighbors = 0;
-  // Pairs that a term refuses whatever the others say, by term of kTermNames; only where asked for.
-  std::array<std::uint64_t, kTermCount> refused{};
   std::uint64_t orphans = 0;            // queries without a source in their ball
   std::uint64_t orphans_unmatched = 0;  // of them, those no source passes the weights of
 
@@ -40,6 +42,12 @@ struct Statistics {
   double seconds_filter = 0;  // search, weights and sums
 
   Statistics& operator+=(const Statistics& other);
+  // A query that averages over so many sources.
+  void add_query(std::uint64_t neighbors) {
+    accepted += neighbors;
+    min_neighbors = std::min(min_neighbors, neighbors);
+    max_neighbors = std::max(max_neighbors, neighbors);
+  }
   [[nodiscard]] double mean_neighbors() const {
     return queries == 0 ? 0 : static_cast<double>(accepted) / static_cast<double>(queries);
   }

@@ -51,6 +51,8 @@ class Weights {
         on_(terms),
         reflectance_sq_(terms.reflectance.value_or(0) * terms.reflectance.value_or(0)) {}
 
+  [[nodiscard]] const WeightTerms& terms() const { return on_; }
+
   [[nodiscard]] bool pass(std::uint32_t i, std::uint32_t j, float r_i) const {
     return !refuses_normal(i, j) && !refuses_reflectance(i, j) && !refuses_visibility(i, j) &&
            !refuses_hit_distance(i, j) && !refuses_plane(i, j, r_i) && !refuses_direction(i, j) &&

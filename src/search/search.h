@@ -28,6 +28,7 @@ class Search {
 };
 
 enum class Kind {
+  flann,  // FLANN over groups of points: the fast engine of filter/
   plain,  // FLANN, one search a query
   brute   // every point is tested: the oracle
 };

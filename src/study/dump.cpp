@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -18,6 +19,8 @@ static_assert(sizeof(Vec3) == 3 * sizeof(float) && sizeof(Rgb) == 3 * sizeof(flo
 
 // Largest picture of all cameras together; a damaged size must not become an allocation.
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 32;
+
+constexpr std::size_t kCheckGrain = 65536;  // records a range
 
 std::span<float> as_floats(std::vector<float>& column) {
   return column;
@@ -156,17 +159,22 @@ void Dump::read(const filter::PathRange& range, const ChannelSet& channels,
                 BlockRecords& out) const {
   const auto count = static_cast<std::size_t>(range.size());
   std::vector<std::function<void()>> tasks;
+  // In the task: a column's first touch costs as much as its reading.
+  const auto make_room = [count](auto& column) {
+    if (column.capacity() < count) column = {};  // no old values beside the new ones
+    column.resize(count);
+  };
   const auto floats = [&](std::optional<std::size_t> channel, auto& column) {
-    column.resize(channel ? count : 0);
-    if (!channel) return;
-    tasks.push_back([this, &range, &column, count, place = *channel] {
+    if (!channel) return column.clear();
+    tasks.push_back([this, &range, &column, &make_room, count, place = *channel] {
+      make_room(column);
       reader_.read_floats(place, range.first, count, as_floats(column));
     });
   };
   const auto integers = [&](std::optional<std::size_t> channel, auto& column) {
-    column.resize(channel ? count : 0);
-    if (!channel) return;
-    tasks.push_back([this, &range, &column, count, place = *channel] {
+    if (!channel) return column.clear();
+    tasks.push_back([this, &range, &column, &make_room, count, place = *channel] {
+      make_room(column);
       reader_.read(place, range.first, count, std::as_writable_bytes(std::span(column)));
     });
   };
@@ -190,25 +198,39 @@ void Dump::read(const filter::PathRange& range, const ChannelSet& channels,
 }
 
 void Dump::check_pixels(const filter::PathRange& range, const BlockRecords& records) const {
-  for (std::size_t i = 0; i < records.pixel.size(); ++i) {
-    const std::size_t camera = records.camera.empty() ? 0 : records.camera[i];
-    if (camera >= cameras_.size()) {
-      throw Error(
-          ErrorCode::bad_input,
-          fmt::format(
-              "{}: record {}: camera {} does not exist, the metadata name {}; render it again",
-              reader_.path(), range.first + i, camera, cameras_.size()));
+  const auto camera_of = [&records](std::size_t i) -> std::size_t {
+    return records.camera.empty() ? 0 : records.camera[i];
+  };
+  const auto is_good = [&](std::size_t i) {
+    const std::size_t camera = camera_of(i);
+    return camera < cameras_.size() &&
+           records.pixel[i] < std::uint64_t{cameras_[camera].width} * cameras_[camera].height;
+  };
+  const std::size_t count = records.pixel.size();
+  std::vector<std::size_t> bad(core::range_count(count, kCheckGrain), count);  // the first a range
+  core::parallel_for(count, kCheckGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (is_good(i)) continue;
+      bad[begin / kCheckGrain] = i;
+      return;
     }
-    const filter::CameraView& view = cameras_[camera];
-    if (records.pixel[i] >= std::uint64_t{view.width} * view.height) {
-      throw Error(
-          ErrorCode::bad_input,
-          fmt::format(
-              "{}: record {}: pixel {} is outside the {} x {} of camera \"{}\"; render it again",
-              reader_.path(), range.first + i, records.pixel[i], view.width, view.height,
-              metadata_.cameras[camera].name));
-    }
+  });
+  const auto first = std::find_if(bad.begin(), bad.end(), [&](std::size_t i) { return i < count; });
+  if (first == bad.end()) return;
+  const std::size_t i = *first, camera = camera_of(i);
+  if (camera >= cameras_.size()) {
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format(
+            "{}: record {}: camera {} does not exist, the metadata name {}; render it again",
+            reader_.path(), range.first + i, camera, cameras_.size()));
   }
+  throw Error(
+      ErrorCode::bad_input,
+      fmt::format(
+          "{}: record {}: pixel {} is outside the {} x {} of camera \"{}\"; render it again",
+          reader_.path(), range.first + i, records.pixel[i], cameras_[camera].width,
+          cameras_[camera].height, metadata_.cameras[camera].name));
 }
 
 }  // namespace psf::study

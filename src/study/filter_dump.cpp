@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "filter/average.h"
 #include "filter/radius.h"
+#include "study/block_reader.h"
 
 namespace psf::study {
 namespace {
@@ -43,21 +45,19 @@ void check_snapshots(const Dump& dump, const std::vector<std::uint64_t>& snapsho
 
 class Runner {
  public:
-  Runner(const Dump& dump, const FilterRun& run)
+  // `copies`: of the pictures that are kept at once.
+  Runner(const Dump& dump, const FilterRun& run, std::uint64_t copies)
       : dump_(dump),
         run_(run),
+        copies_(copies),
         first_(run.passes.first),
-        channels_(dump.select(run.parameters, true)) {
-    for (const filter::CameraView& camera : dump.cameras()) {
-      outcome_.pictures.emplace_back(camera, channels_.reflectance.has_value(),
-                                     channels_.normal.has_value());
-    }
-  }
+        channels_(dump.select(run.parameters, true)),
+        reader_(dump, channels_) {}
 
   // All passes up to `last`, not included.
   FilterOutcome run(std::size_t last) {
-    set_last(last);
     check_snapshots(dump_, run_.snapshots, last - first_);
+    set_last(last);
     while (next_block_ < blocks_->count()) filter_block(next_block_++);
     return std::move(outcome_);
   }
@@ -69,28 +69,41 @@ class Runner {
       filter_block(next_block_++);
     }
     if (next_block_ == blocks_->count()) return outcome_;
-    const FilterOutcome whole = outcome_;
+    FilterOutcome whole = outcome_;
     filter_block(next_block_);
-    return std::exchange(outcome_, whole);
+    return std::exchange(outcome_, std::move(whole));
   }
 
  private:
+  void make_pictures() {
+    for (const filter::CameraView& camera : dump_.cameras()) {
+      outcome_.pictures.emplace_back(camera, channels_.reflectance.has_value(),
+                                     channels_.normal.has_value());
+    }
+  }
+
   void set_last(std::size_t last) {
     blocks_.emplace(run_.parameters.block, dump_.pass_bounds(), first_, last);
     outcome_.passes = last - first_;
     outcome_.blocks = blocks_->count();
+    outcome_.memory =
+        plan_memory(dump_, channels_, {run_.parameters, first_, last, run_.max_memory, copies_});
+    if (outcome_.pictures.empty()) make_pictures();
   }
 
   void filter_block(std::uint64_t k) {
     const filter::PathRange range = (*blocks_)[k];
-    const auto read_start = Clock::now();
-    dump_.read(range, channels_, records_);
-    outcome_.seconds_read += seconds_since(read_start);
+    const bool ahead = outcome_.memory.blocks > 1 && k + 1 < blocks_->count();
+    const filter::Records records =
+        reader_.read(range, ahead ? std::optional((*blocks_)[k + 1]) : std::nullopt).view();
+    outcome_.seconds_read = reader_.seconds();
 
-    const filter::Records records = records_.view();
     const filter::Block block = describe(k, range);
-    filter::radii(run_.parameters.radius, records, block, radius_);
-    const filter::Average average = filter::average(records, radius_, block, run_.parameters);
+    filter::Average average;
+    core::undisturbed([&] {
+      filter::radii(run_.parameters.radius, records, block, radius_);
+      average = filter::average(records, radius_, block, run_.parameters);
+    });
     outcome_.statistics += average.statistics;
 
     add_to_pictures(range, records, average);
@@ -115,11 +128,11 @@ class Runner {
     std::size_t i = 0;
     const auto add_up_to = [&](std::uint64_t path) {
       const auto start = Clock::now();
-      for (; range.first + i < path; ++i) {
-        CameraPictures& pictures =
-            outcome_.pictures[records.camera.empty() ? 0 : records.camera[i]];
-        if (!pictures.add(records, average, radius_, i)) ++outcome_.overflows;
-      }
+      const auto end = static_cast<std::size_t>(path - range.first);
+      core::undisturbed([&] {
+        outcome_.overflows += add_records(records, average, radius_, i, end, outcome_.pictures);
+      });
+      i = end;
       outcome_.seconds_film += seconds_since(start);
     };
     while (next_snapshot_ < run_.snapshots.size()) {
@@ -135,12 +148,13 @@ class Runner {
 
   const Dump& dump_;
   const FilterRun& run_;
+  std::uint64_t copies_;
   std::size_t first_;  // pass
   std::optional<filter::Blocks> blocks_;
   std::uint64_t next_block_ = 0;
   ChannelSet channels_;
+  BlockReader reader_;
   std::size_t next_snapshot_ = 0;
-  BlockRecords records_;
   std::vector<float> radius_;
   FilterOutcome outcome_;
 };
@@ -150,14 +164,14 @@ class Runner {
 FilterOutcome filter_dump(const Dump& dump, const FilterRun& run) {
   run.parameters.validate();
   const std::size_t last = last_pass(dump, run.passes);
-  return Runner(dump, run).run(last);
+  return Runner(dump, run, 1).run(last);
 }
 
 FilterOutcome follow_dump(Dump& dump, const FilterRun& run,
                           const std::function<void(const FilterOutcome&)>& on_pictures,
                           const std::function<void()>& wait) {
   run.parameters.validate();
-  Runner runner(dump, run);
+  Runner runner(dump, run, 3);  // of whole blocks, with the last one, and handed out before
   FilterOutcome outcome;
   for (;;) {
     const std::size_t passes = dump.pass_bounds().size() - 1;

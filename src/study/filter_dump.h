@@ -10,6 +10,7 @@
 #include "filter/parameters.h"
 #include "filter/statistics.h"
 #include "study/dump.h"
+#include "study/memory.h"
 #include "study/pictures.h"
 
 namespace psf::study {
@@ -29,6 +30,9 @@ struct FilterRun {
   std::function<void(std::uint64_t passes, std::span<const CameraPictures>)> on_snapshot;
   std::function<void(std::uint64_t done, std::uint64_t total)>
       on_progress;  // paths, after every block
+  // Bytes, kept by the estimate of memory.h: first the next block is no longer read ahead, which is
+  // slower and gives the same bytes. Not set: no limit.
+  std::optional<std::uint64_t> max_memory;
 };
 
 struct FilterOutcome {
@@ -37,13 +41,15 @@ struct FilterOutcome {
   std::uint64_t passes = 0, blocks = 0;
   std::uint64_t overflows =
       0;                    // paths left out because throughput times average is no finite float
-  double seconds_read = 0;  // reading and decoding
+  double seconds_read = 0;  // waiting for the reader, which works beside the filter
   double seconds_film = 0;  // adding up pictures
+  MemoryEstimate memory;
 };
 
-// Memory: the records of one block, what the filter needs on top, and the pictures. Throws what
-// Dump, Blocks and average() throw, Error{usage} for passes or snapshots that the dump does not
-// have, Error{interrupted}.
+// The next block is read while one is filtered. Memory: MemoryEstimate, whatever the length of the
+// dump. Throws what Dump, Blocks and average() throw, of each block once those before it are in the
+// pictures; Error{usage} for passes or snapshots that the dump does not have; Error{limit} where
+// `max_memory` cannot be kept, before any work; Error{interrupted}.
 [[nodiscard]] FilterOutcome filter_dump(const Dump& dump, const FilterRun& run);
 
 // The same for a dump that is still being written: calls `on_pictures` whenever passes were

@@ -2,6 +2,8 @@
 // it.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "film/film.h"
@@ -15,8 +17,8 @@ class CameraPictures {
  public:
   CameraPictures(const filter::CameraView& camera, bool with_albedo, bool with_normal);
 
-  // [pixel]: adds record i of a filtered block. In path order, from one thread. Returns false where
-  // the radiance overflows; then the path is left out.
+  // [pixel]: adds record i of a filtered block. A pixel's records in path order, from one thread.
+  // Returns false where the radiance overflows; then the path is left out.
   bool add(const filter::Records& records, const filter::Average& average,
            std::span<const float> radius, std::size_t i);
 
@@ -24,6 +26,10 @@ class CameraPictures {
   // contribution of their own; neighbors.Y and radius.Y, means over the paths with a vertex;
   // albedo.R/G/B and normal.X/Y/Z where asked for, 0 where a path has no vertex.
   [[nodiscard]] film::Image image() const;
+
+  // Bytes a pixel: of the sums, and what image() and writing it take for a moment.
+  static constexpr std::uint64_t kBytesOfSums = 5 * (3 * sizeof(double) + sizeof(std::uint64_t));
+  static constexpr std::uint64_t kBytesToWrite = 2 * 14 * sizeof(float);
 
  private:
   void add_guides(const filter::Records& records, std::size_t i, bool vertex);
@@ -33,5 +39,13 @@ class CameraPictures {
   bool with_albedo_, with_normal_;
   film::Film albedo_, normal_;
 };
+
+// Adds records [first, last) of a filtered block to the pictures of their cameras, threads sharing
+// the pixels: the same sums for any number of threads. Returns how many paths were left out because
+// of an overflow.
+[[nodiscard]] std::uint64_t add_records(const filter::Records& records,
+                                        const filter::Average& average,
+                                        std::span<const float> radius, std::size_t first,
+                                        std::size_t last, std::span<CameraPictures> pictures);
 
 }  // namespace psf::study

@@ -2,6 +2,7 @@
 #include "core/parallel.h"
 
 #include <algorithm>
+#include <atomic>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -10,6 +11,7 @@
 
 #include "catch.h"
 
+using psf::core::Aside;
 using psf::core::parallel_for;
 using psf::core::ThreadLimit;
 
@@ -60,3 +62,57 @@ TEST_CASE("a thread limit holds while it lives") {
   }
   CHECK(psf::core::thread_count() == before);
 }
+
+TEST_CASE("work aside is done once wait() returns, piece after piece, loops of its own included") {
+  for (const std::size_t threads : {1u, 4u}) {
+    const ThreadLimit limit(threads);
+    Aside aside;
+    aside.wait();
+    std::atomic<std::size_t> sum{0};
+    for (std::size_t piece = 1; piece <= 50; ++piece) {
+      aside.start([&sum] {
+        parallel_for(100, 7, [&sum](std::size_t begin, std::size_t end) { sum += end - begin; });
+      });
+      parallel_for(100, 7, [&sum](std::size_t begin, std::size_t end) { sum += end - begin; });
+      aside.wait();
+      REQUIRE(sum == 200 * piece);
+    }
+  }
+}
+
+TEST_CASE("what work aside throws arrives at wait(), once, and disturbs no loop of the caller") {
+  Aside aside;
+  aside.start([] {
+    parallel_for(10, 1, [](std::size_t, std::size_t) { throw std::runtime_error("aside"); });
+  });
+  std::atomic<std::size_t> count{0};
+  CHECK_NOTHROW(parallel_for(1000, 1, [&count](std::size_t, std::size_t) { ++count; }));
+  CHECK(count == 1000);
+  CHECK_THROWS_WITH(aside.wait(), "aside");
+  CHECK_NOTHROW(aside.wait());
+  aside.start([&count] { count = 1; });
+  CHECK_NOTHROW(aside.wait());
+  CHECK(count == 1);
+}
+
+TEST_CASE("work aside that nobody waits for is done before its Aside is gone") {
+  std::atomic<bool> done{false};
+  {
+    Aside aside;
+    aside.start([&done] { done = true; });
+  }
+  CHECK(done);
+}
+
+#ifndef __SANITIZE_THREAD__  // where each piece has a thread of its own
+TEST_CASE("undisturbed loops leave work aside alone; with one thread wait() does it") {
+  const ThreadLimit limit(1);
+  Aside aside;
+  std::atomic<bool> done{false};
+  aside.start([&done] { done = true; });
+  psf::core::undisturbed([] { parallel_for(1000, 1, [](std::size_t, std::size_t) {}); });
+  CHECK_FALSE(done);
+  aside.wait();
+  CHECK(done);
+}
+#endif

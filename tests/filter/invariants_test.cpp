@@ -126,6 +126,7 @@ TEST_CASE("With default weights nothing crosses a thin wall") {
   Parameters parameters;
   parameters.radius = {0.3, filter::RadiusBasis::distance};
   parameters.iterations = 3;
+  parameters.count_refusals = true;
   const Average result = run(set, parameters);
   for (std::size_t i = 0; i < set.size(); ++i) REQUIRE(result.c_bar[i] == set.contribution[i]);
   CHECK(result.statistics.mean_neighbors() > 20);

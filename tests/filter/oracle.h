@@ -168,20 +168,15 @@ class Oracle {
     const auto by = refusals(i, j);
     for (std::size_t k = 0; k < 7 && j != i; ++k) r.refused[k] += by[k] ? 1u : 0u;
   }
-  // Among the nearest 16, 64, 256, 1024, all: the first set with one that passes; its 4 nearest
-  // that do.
+  // The 4 nearest that pass, ties by the lower record; the nearest of all where none does.
   [[nodiscard]] Triple adopt(std::size_t i, const std::vector<std::size_t>& sources,
                              const std::vector<Triple>& value, OracleResult* r) const {
     std::vector<std::pair<double, std::size_t>> near;
     for (const std::size_t j : sources) near.emplace_back(distance_sq(i, j), j);
     std::sort(near.begin(), near.end());
     std::vector<std::size_t> taken;
-    for (const std::size_t reach :
-         {std::size_t{16}, std::size_t{64}, std::size_t{256}, std::size_t{1024}, near.size()}) {
-      for (std::size_t k = 0; k < std::min(reach, near.size()) && taken.size() < 4; ++k) {
-        if (passes(i, near[k].second)) taken.push_back(near[k].second);
-      }
-      if (!taken.empty()) break;
+    for (std::size_t k = 0; k < near.size() && taken.size() < 4; ++k) {
+      if (passes(i, near[k].second)) taken.push_back(near[k].second);
     }
     if (r != nullptr) {
       ++r->orphans;

@@ -1,25 +1,13 @@
 // psf-bench as a user meets it: a tiny run, and what a program reads of it.
-#include <filesystem>
-#include <map>
-#include <nlohmann/json.hpp>
-
+#include "bench_report.h"
 #include "catch.h"
 #include "command.h"
 
 using psf::tests::Outcome;
 using psf::tests::read_text;
+using psf::tests::rows_of;
 using psf::tests::run;
 using psf::tests::TempFolder;
-
-namespace {
-
-std::map<std::string, nlohmann::json> rows_of(const nlohmann::json& report) {
-  std::map<std::string, nlohmann::json> rows;
-  for (const auto& row : report.at("rows")) rows[row.at("name")] = row;
-  return rows;
-}
-
-}  // namespace
 
 TEST_CASE("psf-bench files measures a made-up dump and leaves nothing behind") {
   const TempFolder folder;

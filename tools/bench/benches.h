@@ -6,5 +6,6 @@
 namespace psf::bench {
 
 void add_files(CLI::App& app);
+void add_filter(CLI::App& app);
 
 }  // namespace psf::bench

@@ -108,10 +108,7 @@ void run(const FilesOptions& options) {
   if (!options.common.json.empty()) {
     core::write_text_file(options.common.json, to_json(options, dump, rows).dump(2) + "\n");
   }
-  const std::vector<std::string> missed_rows = missed(rows);
-  if (!options.check || missed_rows.empty()) return;
-  throw Error(ErrorCode::comparison,
-              fmt::format("targets are missed: {}", fmt::join(missed_rows, ", ")));
+  if (options.check) require_targets(rows);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "formats/error.h"
+
 namespace psf::bench {
 namespace {
 
@@ -68,12 +70,14 @@ nlohmann::ordered_json to_json(const std::vector<Row>& rows) {
   return out;
 }
 
-std::vector<std::string> missed(const std::vector<Row>& rows) {
-  std::vector<std::string> names;
+void require_targets(const std::vector<Row>& rows) {
+  std::vector<std::string> missed;
   for (const Row& row : rows) {
-    if (row.target && !row.target->is_met(row.value.median)) names.push_back(row.name);
+    if (row.target && !row.target->is_met(row.value.median)) missed.push_back(row.name);
   }
-  return names;
+  if (missed.empty()) return;
+  throw Error(ErrorCode::comparison,
+              fmt::format("targets are missed: {}", fmt::join(missed, ", ")));
 }
 
 }  // namespace psf::bench

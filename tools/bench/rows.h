@@ -44,7 +44,7 @@ template <class Call>
 
 void print_table(const std::vector<Row>& rows);
 [[nodiscard]] nlohmann::ordered_json to_json(const std::vector<Row>& rows);
-// Names of the rows whose target is missed.
-[[nodiscard]] std::vector<std::string> missed(const std::vector<Row>& rows);
+// Throws Error{comparison} that names the rows whose target is missed.
+void require_targets(const std::vector<Row>& rows);
 
 }  // namespace psf::bench

@@ -62,8 +62,10 @@ filter::Parameters parameters_of(const FilterOptions& options) {
   if (!options.sources.empty()) parameters.sources = filter::parse_sources(options.sources);
   parameters.estimator =
       options.estimator == "disk" ? filter::Estimator::disk : filter::Estimator::average;
-  parameters.search = options.search == "brute" ? search::Kind::brute : search::Kind::plain;
-  parameters.count_refusals = !options.no_refusals;
+  parameters.search = options.search == "brute"   ? search::Kind::brute
+                      : options.search == "plain" ? search::Kind::plain
+                                                  : search::Kind::flann;
+  parameters.count_refusals = options.refusals;
   parameters.validate();
   return parameters;
 }
@@ -120,11 +122,20 @@ void add_filter_options(CLI::App& command, FilterOptions& options) {
       .add_option("--snapshots", options.snapshots,
                   "also write FILE.0001.exr ... after so many passes")
       ->type_name("pow2|N,N,...");
-  command.add_option("--search", options.search, "neighbour search")
-      ->check(CLI::IsMember({"plain", "brute"}))
+  command
+      .add_option(
+          "--search", options.search,
+          "engine: flann; the same result from plain FLANN, a search a record, or by brute force")
+      ->check(CLI::IsMember({"flann", "plain", "brute"}))
       ->capture_default_str();
-  command.add_flag("--no-refusals", options.no_refusals,
-                   "do not count what each weight refuses: faster");
+  command.add_flag("--refusals", options.refusals,
+                   "count the pairs in the ball and what each weight refuses: slower");
+  command
+      .add_option("--max-memory", options.max_memory,
+                  "what it may take, 500M or 4G: reads no block ahead, or refuses and says what "
+                  "block would fit (default no limit)")
+      ->transform(CLI::AsSizeValue(false))
+      ->type_name("SIZE");
   command
       .add_flag("--follow", options.follow,
                 "of a dump that is being written: a new picture whenever a pass is committed, "

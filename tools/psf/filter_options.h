@@ -23,9 +23,10 @@ struct FilterOptions {
   double delta = filter::Radius().delta;
   std::optional<bool> visibility;
   bool material = false, no_weights = false;
-  bool demodulate = false, no_refusals = false, follow = false;
+  bool demodulate = false, refusals = false, follow = false;
+  std::optional<std::uint64_t> max_memory;  // bytes
   std::uint32_t iterations = 1;
-  std::string search = "plain", estimator = "average", radius_count = "samples";
+  std::string search = "flann", estimator = "average", radius_count = "samples";
 };
 
 // Declares the options, which write into `options`.

@@ -20,6 +20,7 @@ struct FilterReport {
   std::size_t cameras = 1;
   std::vector<std::string> written;  // files
   double seconds_write = 0, seconds = 0;
+  study::PeakMemory peak;
 };
 
 // "a 1, b 2" of those that are not 0, or `otherwise`.
@@ -49,9 +50,6 @@ inline void print_report(const FilterReport& report) {
   const auto line = [](const char* name, const std::string& text) {
     fmt::print("{:<10} {}\n", name, text);
   };
-  const auto mean = [&s](std::uint64_t sum) {
-    return s.queries == 0 ? 0.0 : static_cast<double>(sum) / static_cast<double>(s.queries);
-  };
   fmt::print("{}\n", report.input);
   line("records", fmt::format("{} in {} and {}, {}", with_commas(s.records),
                               counted(report.outcome.passes, "pass", "passes"),
@@ -63,10 +61,14 @@ inline void print_report(const FilterReport& report) {
   line("radius", fmt::format("{}, delta {:.4g}, block {}", filter::to_text(p.radius),
                              p.radius.delta, filter::to_text(p.block)));
   line("weights", weights_text(p));
-  line("neighbors",
-       fmt::format("mean {:.1f}, min {}, max {}; {:.1f} in the ball", s.mean_neighbors(),
-                   s.queries == 0 ? "0" : with_commas(s.min_neighbors),
-                   with_commas(s.max_neighbors), mean(s.candidates)));
+  const std::string in_the_ball =
+      p.count_refusals && s.queries > 0
+          ? fmt::format("; {:.1f} in the ball",
+                        static_cast<double>(s.candidates) / static_cast<double>(s.queries))
+          : "";
+  line("neighbors", fmt::format("mean {:.1f}, min {}, max {}{}", s.mean_neighbors(),
+                                s.queries == 0 ? "0" : with_commas(s.min_neighbors),
+                                with_commas(s.max_neighbors), in_the_ball));
   if (p.count_refusals) {
     const auto share = [&s](std::uint64_t refused) {
       return fmt::format("{:.1f}%",
@@ -88,9 +90,16 @@ inline void print_report(const FilterReport& report) {
                      listed(filter::kCheckedNames, s.non_finite, "none", with_commas),
                      with_commas(s.without_source), with_commas(report.outcome.overflows)));
   }
+  const study::MemoryEstimate& memory = report.outcome.memory;
+  line("memory",
+       fmt::format("at most {} expected, with {} of records; {} was the peak, and {} of code",
+                   in_mebibytes(memory.total()), memory.blocks == 1 ? "one block" : "two blocks",
+                   in_mebibytes(report.peak.own),
+                   in_mebibytes(report.peak.process - report.peak.own)));
   line("time",
        fmt::format(
-           "{:.2f} s: read {:.2f}, index {:.2f}, filter {:.2f}, pictures {:.2f}, write {:.2f}",
+           "{:.2f} s: waiting for the reader {:.2f}, index {:.2f}, filter {:.2f}, pictures {:.2f}, "
+           "write {:.2f}",
            report.seconds, report.outcome.seconds_read, s.seconds_index, s.seconds_filter,
            report.outcome.seconds_film, report.seconds_write));
   line("wrote", fmt::format("{}", fmt::join(report.written, ", ")));
@@ -99,6 +108,7 @@ inline void print_report(const FilterReport& report) {
 inline nlohmann::ordered_json to_json(const FilterReport& report) {
   using Json = nlohmann::ordered_json;
   const filter::Statistics& s = report.outcome.statistics;
+  const study::MemoryEstimate& memory = report.outcome.memory;
   Json parameters, refused, non_finite;
   for (const auto& [name, value] : filter::describe(report.parameters)) parameters[name] = value;
   for (std::size_t k = 0; k < filter::kTermCount; ++k)
@@ -116,7 +126,6 @@ inline nlohmann::ordered_json to_json(const FilterReport& report) {
                {"without_vertex", s.without_vertex},
                {"queries", s.queries},
                {"sources", s.sources},
-               {"candidates", s.candidates},
                {"neighbors",
                 {{"mean", s.mean_neighbors()},
                  {"min", s.queries == 0 ? 0 : s.min_neighbors},
@@ -128,6 +137,16 @@ inline nlohmann::ordered_json to_json(const FilterReport& report) {
                {"non_finite", non_finite},
                {"without_source", s.without_source},
                {"overflows", report.outcome.overflows},
+               {"memory",
+                {{"estimate", memory.total()},
+                 {"program", memory.program},
+                 {"pictures", memory.pictures},
+                 {"block", memory.block},
+                 {"blocks", memory.blocks},
+                 {"filter", memory.filter},
+                 {"stored_block", memory.stored},
+                 {"peak", report.peak.own},
+                 {"peak_process", report.peak.process}}},
                {"seconds",
                 {{"total", report.seconds},
                  {"read", report.outcome.seconds_read},
@@ -136,7 +155,9 @@ inline nlohmann::ordered_json to_json(const FilterReport& report) {
                  {"pictures", report.outcome.seconds_film},
                  {"write", report.seconds_write}}},
                {"files", report.written}};
-  json["refused"] = report.parameters.count_refusals ? refused : Json(nullptr);
+  const bool counted = report.parameters.count_refusals;
+  json["candidates"] = counted ? Json(s.candidates) : Json(nullptr);
+  json["refused"] = counted ? refused : Json(nullptr);
   return json;
 }
 

@@ -21,4 +21,10 @@ inline std::string counted(std::uint64_t count, const char* one, const char* man
   return with_commas(count) + " " + (count == 1 ? one : many);
 }
 
+// Bytes, rounded up: "1,234 MiB"
+inline std::string in_mebibytes(std::uint64_t bytes) {
+  constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
+  return with_commas((bytes + kMebibyte - 1) / kMebibyte) + " MiB";
+}
+
 }  // namespace psf::tools

@@ -56,8 +56,8 @@ TEST_CASE(
   const std::string many = scratch.path("many.pvb"), few = scratch.path("few.pvb");
   run_well("psf_sphere " + many + " 400 96");
   run_well("psf_sphere " + few + " 4 96");
-  run_well("psf filter " + many + " --quiet --no-refusals --r0 0 -o " + scratch.path("many.exr"));
-  run_well("psf filter " + few + " --quiet --no-refusals --r0 0 -o " + scratch.path("few.exr"));
+  run_well("psf filter " + many + " --quiet --r0 0 -o " + scratch.path("many.exr"));
+  run_well("psf filter " + few + " --quiet --r0 0 -o " + scratch.path("few.exr"));
   run_well("psf filter " + few + " --quiet -o " + scratch.path("filtered.exr"));
   const double before = relative_mse(scratch.path("few.exr"), scratch.path("many.exr"));
   const double after = relative_mse(scratch.path("filtered.exr"), scratch.path("many.exr"));

@@ -1,0 +1,89 @@
+#include "filter/engine/adopt.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace psf::filter::engine {
+namespace {
+
+constexpr float kGrowth = 8;  // of the squared radius
+constexpr float kLeast = 1e-30f;
+
+bool closer(const search::Neighbor& a, const search::Neighbor& b) {
+  return a.d_sq != b.d_sq ? a.d_sq < b.d_sq : a.index < b.index;
+}
+
+// The sources nearest to record i that `pass`, at most `count`.
+template <class Pass>
+class Nearest {
+ public:
+  Nearest(const Tree& tree, const search::BoxIndex& index, std::span<const Vec3> x, std::uint32_t i,
+          std::size_t count, const Pass& pass)
+      : tree_(tree), index_(index), x_(x), at_{x[i], x[i]}, count_(count), pass_(pass) {}
+
+  // Looks in balls from r_sq on. Sorted; index: the record's number.
+  std::vector<search::Neighbor> find(float r_sq) {
+    std::vector<std::uint32_t> nodes;
+    for (;; r_sq *= kGrowth) {
+      index_.within(at_, r_sq, nodes);
+      const bool all = nodes.size() == tree_.nodes(kLevels - 1);
+      r_sq_ = all ? std::numeric_limits<float>::infinity() : r_sq;
+      found_.clear();
+      for (const std::uint32_t node : nodes) look_into(node);
+      if (all || found_.size() == count_) return std::move(found_);
+    }
+  }
+
+ private:
+  void look_into(std::size_t node) {
+    const std::size_t end = std::min(tree_.nodes(0), (node + 1) * kWidth);
+    for (std::size_t group = node * kWidth; group < end; ++group) {
+      const float gap_sq = search::gap_sq(at_, tree_.box(0, group));
+      if (!search::chi_ball(gap_sq, r_sq_) || (is_full() && gap_sq > found_.back().d_sq)) continue;
+      for (std::size_t k = group * kWidth; k < std::min(tree_.size(), (group + 1) * kWidth); ++k) {
+        consider(tree_.order()[k]);
+      }
+    }
+  }
+  void consider(std::uint32_t j) {
+    const search::Neighbor candidate{j, search::distance_sq(at_.low, x_[j])};
+    if (!search::chi_ball(candidate.d_sq, r_sq_)) return;
+    if ((is_full() && !closer(candidate, found_.back())) || !pass_(j)) return;
+    if (is_full()) found_.pop_back();
+    found_.insert(std::upper_bound(found_.begin(), found_.end(), candidate, closer), candidate);
+  }
+  [[nodiscard]] bool is_full() const { return found_.size() == count_; }
+
+  const Tree& tree_;
+  const search::BoxIndex& index_;
+  std::span<const Vec3> x_;
+  search::Box at_;
+  std::size_t count_;
+  const Pass& pass_;
+  float r_sq_ = 0;
+  std::vector<search::Neighbor> found_;
+};
+
+}  // namespace
+
+Adopted adopt(const Tree& tree, const search::BoxIndex& index, const Problem& problem,
+              std::uint32_t i) {
+  const float r_i = problem.radius[i];
+  const float r_sq = std::max(kLeast, kGrowth * r_i * r_i);
+  const auto pass = [&](std::uint32_t j) { return problem.weights.pass(i, j, r_i); };
+  const std::span<const Vec3> x = problem.records.position;
+  std::vector<search::Neighbor> nearest =
+      Nearest(tree, index, x, i, kOrphanSources, pass).find(r_sq);
+  Adopted adopted;
+  if (nearest.empty()) {
+    adopted.matched = false;
+    const auto any = [](std::uint32_t) { return true; };
+    nearest = Nearest(tree, index, x, i, 1, any).find(r_sq);
+  }
+  for (const search::Neighbor& one : nearest) adopted.sources.push_back(one.index);
+  return adopted;
+}
+
+}  // namespace psf::filter::engine

@@ -1,0 +1,83 @@
+// The same source once for every instruction set: Highway includes it again for each.
+#include "filter/engine/kernel.h"
+
+// SSE4, AVX2, AVX-512 and NEON, beside what every machine of the kind has: newer sets (lower bits)
+// are more code to test and no faster here. Before the first header of Highway.
+#define HWY_DISABLED_TARGETS \
+  ((HWY_AVX3 - 1) | HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "filter/engine/kernel.cpp"
+#include <hwy/foreach_target.h>
+// Must come after foreach_target.h.
+#include <hwy/highway.h>
+
+#include "filter/engine/count-inl.h"
+#include "filter/engine/walk-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace psf::filter::engine::HWY_NAMESPACE {
+
+template <class Tag>
+HWY_INLINE void extremes_of(Tag tag, const float* lows, const float* highs, float* low,
+                            float* high) {
+  auto least = hn::BitCast(tag, hn::Load(kD, lows));
+  auto greatest = hn::BitCast(tag, hn::Load(kD, highs));
+  for (std::size_t k = kLanes; k < kWidth; k += kLanes) {
+    least = hn::Min(least, hn::BitCast(tag, hn::Load(kD, lows + k)));
+    greatest = hn::Max(greatest, hn::BitCast(tag, hn::Load(kD, highs + k)));
+  }
+  *low = hn::GetLane(hn::BitCast(kD, hn::MinOfLanes(tag, least)));
+  *high = hn::GetLane(hn::BitCast(kD, hn::MaxOfLanes(tag, greatest)));
+}
+
+void extremes_on(const ColumnPlan& plan, const float* lows, const float* highs, float* low,
+                 float* high) {
+  for (std::size_t c = 0; c < plan.count * kWidth; c += kWidth) {
+    if (plan.is_integer(c / kWidth)) {
+      extremes_of(kDI, lows + c, highs + c, low + c, high + c);
+    } else {
+      extremes_of(kD, lows + c, highs + c, low + c, high + c);
+    }
+  }
+}
+
+void average_on(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> nodes,
+                Packet& packet) {
+  for (std::size_t lane = 0; lane < kWidth; lane += kLanes) {
+    AverageWalk(tree, terms, packet, lane).run(nodes);
+  }
+}
+
+void count_on(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> nodes,
+              const Packet& packet, PairCounts& counts) {
+  for (std::size_t lane = 0; lane < kWidth; lane += kLanes) {
+    CountWalk(tree, terms, packet, lane, counts).run(nodes);
+  }
+}
+
+}  // namespace psf::filter::engine::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace psf::filter::engine {
+
+HWY_EXPORT(extremes_on);
+HWY_EXPORT(average_on);
+HWY_EXPORT(count_on);
+
+void extremes(const ColumnPlan& plan, const float* lows, const float* highs, float* low,
+              float* high) {
+  HWY_DYNAMIC_DISPATCH(extremes_on)(plan, lows, highs, low, high);
+}
+void average(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> nodes,
+             Packet& packet) {
+  HWY_DYNAMIC_DISPATCH(average_on)(tree, terms, nodes, packet);
+}
+void count_pairs(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> nodes,
+                 const Packet& packet, PairCounts& counts) {
+  HWY_DYNAMIC_DISPATCH(count_on)(tree, terms, nodes, packet, counts);
+}
+
+}  // namespace psf::filter::engine
+#endif

@@ -1,0 +1,54 @@
+// The vector code of the engine: 16 queries walk the tree together. Compiled for several
+// instruction sets (Highway), chosen at run time; all give the same bytes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "filter/engine/tree.h"
+#include "filter/weights.h"
+
+namespace psf::filter::engine {
+
+// A query a lane. What is averaged for a query, and in which order, follows from that query, the
+// tree and the list of families alone: not from its neighbours in the packet nor from how many
+// lanes a vector has.
+struct Packet {
+  alignas(64) float columns[kMaxColumns][kWidth];  // as in the tree's plan
+  alignas(64) float r_sq[kWidth];                  // squared world units; 0: nothing to find
+  alignas(64) float plane_reach[kWidth];           // t r_i of `plane`
+
+  // What the walk adds to: of the values that pass, and how many.
+  alignas(64) double sum[3][kWidth];
+  alignas(64) std::int32_t count[kWidth];
+  // Out: whether the pair (i, i) passes chi and every term, for which a walk cannot know that it
+  // must; not 0 if so.
+  alignas(64) std::int32_t met_itself[kWidth];
+};
+
+// Counts of pairs for the statistics, the pair (i, i) included.
+struct PairCounts {
+  std::uint64_t candidates = 0;                     // chi = 1
+  std::array<std::uint64_t, kTermCount> refused{};  // of them, by term, whatever the others say
+  PairCounts& operator+=(const PairCounts& other);
+};
+
+// The least value of each of `lows`, (columns, 16), and the greatest of each of `highs`, to
+// low[column * kWidth] and high[column * kWidth].
+void extremes(const ColumnPlan& plan, const float* lows, const float* highs, float* low,
+              float* high);
+
+// Adds up, for every lane, the sources below the given nodes of the tree's upper level that pass
+// chi and every term that is on. `nodes` ascend.
+void average(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> nodes,
+             Packet& packet);
+
+// Adds to `counts` the pairs of the packet's queries with the sources below the given nodes.
+void count_pairs(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> nodes,
+                 const Packet& packet, PairCounts& counts);
+
+}  // namespace psf::filter::engine

@@ -1,0 +1,33 @@
+// Sums of values in double, and what becomes of them: [average] or [disk].
+#pragma once
+
+#include <cstdint>
+#include <numbers>
+
+#include "core/vec.h"
+
+namespace psf::filter {
+
+struct Sum {
+  double x = 0, y = 0, z = 0;
+  void add(const Rgb& v, double weight) {
+    x += weight * double{v.x};
+    y += weight * double{v.y};
+    z += weight * double{v.z};
+  }
+  [[nodiscard]] Rgb over(double divisor) const {
+    return {static_cast<float>(x / divisor), static_cast<float>(y / divisor),
+            static_cast<float>(z / divisor)};
+  }
+};
+
+// `sum` of `count` > 0 values, with their areas if `disk`; `own` is the record's own value, all
+// there is where the disk has no area.
+[[nodiscard]] inline Rgb estimate(const Sum& sum, std::uint32_t count, bool disk, float r_i,
+                                  const Rgb& own) {
+  if (!disk) return sum.over(count);
+  if (!(r_i * r_i > 0)) return own;
+  return sum.over(std::numbers::pi * double{r_i} * double{r_i});
+}
+
+}  // namespace psf::filter

@@ -1,0 +1,35 @@
+// Hands out the blocks of a dump, the next one read while the caller works on this one.
+#pragma once
+
+#include <optional>
+
+#include "core/parallel.h"
+#include "filter/blocks.h"
+#include "study/block_records.h"
+#include "study/dump.h"
+
+namespace psf::study {
+
+class BlockReader {
+ public:
+  // Both must outlive it. The dump must not be refreshed while a block is being read ahead.
+  BlockReader(const Dump& dump, const ChannelSet& channels) : dump_(dump), channels_(channels) {}
+
+  // The records of a block, until the next call. Where `next` is given its reading starts, beside
+  // the caller's work; it takes the memory of a second block. Throws what Dump::read throws: of a
+  // block read ahead when it is asked for; Error{interrupted}.
+  [[nodiscard]] const BlockRecords& read(const filter::PathRange& range,
+                                         const std::optional<filter::PathRange>& next);
+  // The seconds that the caller waited for read().
+  [[nodiscard]] double seconds() const { return seconds_; }
+
+ private:
+  const Dump& dump_;
+  const ChannelSet& channels_;
+  BlockRecords current_, next_;
+  std::optional<filter::PathRange> ahead_;  // what `next_` will hold
+  double seconds_ = 0;
+  core::Aside aside_;  // destroyed first: it writes to `next_`
+};
+
+}  // namespace psf::study

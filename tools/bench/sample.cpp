@@ -1,0 +1,58 @@
+#include "bench/sample.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+
+namespace psf::bench {
+namespace {
+
+filter::Parameters parameters_for(const study::Dump& dump) {
+  const auto has = [&dump](const char* channel) {
+    return dump.reader().head().find(channel).has_value();
+  };
+  filter::Parameters parameters;
+  parameters.radius.delta = 0;
+  const bool angles = std::all_of(dump.cameras().begin(), dump.cameras().end(),
+                                  [](const auto& camera) { return camera.angle_per_pixel > 0; });
+  if (!angles) parameters.radius.basis = filter::RadiusBasis::distance;
+  if (!has("normal")) parameters.weights.normal.reset();
+  if (!has("reflectance")) parameters.weights.reflectance.reset();
+  if (!has("visibility")) parameters.weights.visibility = false;
+  return parameters;
+}
+
+}  // namespace
+
+Sample read_sample(const study::Dump& dump, std::size_t records) {
+  Sample sample;
+  sample.cameras = dump.cameras();
+  sample.parameters = parameters_for(dump);
+  const std::uint64_t count = std::min(std::uint64_t{records}, dump.reader().records());
+  dump.read({0, count}, dump.select(sample.parameters, false), sample.records);
+  for (const std::uint64_t bound : dump.pass_bounds()) {
+    if (bound <= count) sample.passes.push_back(bound);
+  }
+  if (std::none_of(sample.records.flags.begin(), sample.records.flags.end(),
+                   [](std::uint8_t flags) { return (flags & filter::kHasVertex) != 0; })) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: none of the first {} records has a vertex; take more --records",
+                            dump.reader().path(), count));
+  }
+  return sample;
+}
+
+filter::Records part(const filter::Records& records, std::size_t first, std::size_t last) {
+  const auto cut = [&](const auto& column) {
+    return column.empty() ? column : column.subspan(first, last - first);
+  };
+  return {cut(records.flags),       cut(records.position),     cut(records.distance),
+          cut(records.throughput),  cut(records.contribution), cut(records.unfiltered),
+          cut(records.pixel),       cut(records.camera),       cut(records.normal),
+          cut(records.reflectance), cut(records.visibility),   cut(records.hit_distance),
+          cut(records.direction),   cut(records.material)};
+}
+
+}  // namespace psf::bench
