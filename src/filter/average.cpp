@@ -59,13 +59,12 @@ std::vector<Rgb> demodulated(const Records& records, const Roles& roles) {
   return values;
 }
 
-// Back from the values averaged to radiance.
+// Back from the values averaged to radiance. Who averaged over itself alone keeps its own value,
+// which dividing and multiplying would round.
 void finish(const Records& records, const Roles& roles, std::span<const float> radius,
             const Parameters& parameters, Average& result) {
   const std::span<const std::uint32_t> queries = roles.queries;
   const auto finish_one = [&](std::uint32_t i) {
-    // Who averaged over itself alone keeps its own value, which dividing and multiplying would
-    // round.
     const bool alone = result.neighbors[i] == 1 && roles.of[i] == Role::source;
     if (alone && (parameters.estimator == Estimator::average || radius[i] * radius[i] == 0)) {
       result.c_bar[i] = records.contribution[i];

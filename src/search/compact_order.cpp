@@ -25,50 +25,100 @@ struct Point {
 };
 using Points = std::span<Point>;
 
-struct Side {
-  std::size_t axis = 0;
-  float low = 0, length = 0;
-};
-Side longest_side(std::span<const Point> points) {
-  float low[3] = {points[0].x[0], points[0].x[1], points[0].x[2]};
-  float high[3] = {low[0], low[1], low[2]};
-  for (const Point& p : points) {
+struct Box {
+  float low[3], high[3];
+
+  void add(const float (&a)[3], const float (&b)[3]) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = std::min(low[axis], p.x[axis]);
-      high[axis] = std::max(high[axis], p.x[axis]);
+      low[axis] = std::min(low[axis], a[axis]);
+      high[axis] = std::max(high[axis], b[axis]);
     }
   }
-  std::size_t axis = high[1] - low[1] > high[0] - low[0] ? 1 : 0;
-  if (high[2] - low[2] > high[axis] - low[axis]) axis = 2;
-  return {axis, low[axis], high[axis] - low[axis]};
+};
+Box box_of(std::span<const Point> points) {
+  const auto& x = points[0].x;
+  Box box{{x[0], x[1], x[2]}, {x[0], x[1], x[2]}};
+  for (const Point& p : points) box.add(p.x, p.x);
+  return box;
 }
 
-// `from` to `to`, every segment of `segment` points sorted along its longest side: by keys of the
-// segment, the coordinate as finely as there is room for, and the place.
+// The coordinate along the longest side as one of 2^bits steps.
+class Steps {
+ public:
+  Steps(const Box& box, unsigned bits) {
+    for (std::size_t axis = 1; axis < 3; ++axis) {
+      if (side(box, axis) > side(box, axis_)) axis_ = axis;
+    }
+    low_ = box.low[axis_];
+    // Where all are as good as equal, or the side is no finite float, the order stays.
+    const float length = side(box, axis_);
+    const float steps = static_cast<float>(std::uint32_t{1} << bits) * 0.999999f;
+    if (length > 1e-30f && length < 1e37f) scale_ = steps / length;
+  }
+  [[nodiscard]] std::uint32_t of(const Point& p) const {
+    if (scale_ == 0) return 0;
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>((p.x[axis_] - low_) * scale_));
+  }
+
+ private:
+  static float side(const Box& box, std::size_t axis) { return box.high[axis] - box.low[axis]; }
+
+  std::size_t axis_ = 0;
+  float low_ = 0, scale_ = 0;
+};
+
+// Sorts points by keys: what comes first, the coordinate as finely as there is room for, the place.
 template <class Key>
+struct Keys {
+  Keys(std::size_t points, std::size_t segments)
+      : place_bits(static_cast<unsigned>(std::bit_width(points - 1))),
+        step_bits(std::min(24u, unsigned{sizeof(Key)} * 8 - place_bits -
+                                    static_cast<unsigned>(std::bit_width(segments - 1)))),
+        keys(points) {}
+
+  void set(std::size_t place, std::size_t segment, std::uint32_t step) {
+    const Key first = static_cast<Key>(segment) << step_bits | static_cast<Key>(step);
+    keys[place] = first << place_bits | static_cast<Key>(place);
+  }
+  void sort() { hwy::Sorter()(keys.begin(), keys.size(), hwy::SortAscending()); }
+  [[nodiscard]] std::size_t place(std::size_t k) const {
+    return keys[k] & ((Key{1} << place_bits) - 1);
+  }
+
+  unsigned place_bits, step_bits;
+  core::Buffer<Key> keys;
+};
+
+// `from` to `to`, sorted along the longest side.
+template <class Key>
+void sort_all(Points from, Points to) {
+  std::vector<Box> boxes(core::range_count(from.size(), kRun));
+  core::parallel_for(from.size(), kRun, [&](std::size_t begin, std::size_t end) {
+    boxes[begin / kRun] = box_of(from.subspan(begin, end - begin));
+  });
+  for (const Box& box : boxes) boxes[0].add(box.low, box.high);
+  Keys<Key> keys(from.size(), 1);
+  const Steps steps(boxes[0], keys.step_bits);
+  core::parallel_for(from.size(), kRun, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) keys.set(k, 0, steps.of(from[k]));
+  });
+  keys.sort();
+  core::parallel_for(to.size(), kRun, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) to[k] = from[keys.place(k)];
+  });
+}
+
+// Of a run: every segment of `segment` points sorted along its own longest side.
 void sort_segments(Points from, Points to, std::size_t segment) {
   const std::size_t segments = core::range_count(from.size(), segment);
-  const auto place_bits = static_cast<unsigned>(std::bit_width(from.size() - 1));
-  const auto segment_bits = static_cast<unsigned>(std::bit_width(segments - 1));
-  const unsigned step_bits = std::min(24u, unsigned{sizeof(Key)} * 8 - place_bits - segment_bits);
-  const float steps = static_cast<float>(std::uint32_t{1} << step_bits) * 0.999999f;
-  core::Buffer<Key> keys(from.size());
+  Keys<std::uint32_t> keys(from.size(), segments);
   for (std::size_t s = 0; s < segments; ++s) {
     const std::size_t begin = s * segment, end = std::min(from.size(), begin + segment);
-    const Side side = longest_side(from.subspan(begin, end - begin));
-    // Where all are as good as equal, or the side is no finite float, the order stays.
-    const bool is_measured = side.length > 1e-30f && side.length < 1e37f;
-    const float scale = is_measured ? steps / side.length : 0;
-    const Key first = static_cast<Key>(s) << (step_bits + place_bits);
-    for (std::size_t k = begin; k < end; ++k) {
-      const float along = is_measured ? (from[k].x[side.axis] - side.low) * scale : 0;
-      const auto step = static_cast<std::int32_t>(along);
-      keys[k] = first | static_cast<Key>(step) << place_bits | static_cast<Key>(k);
-    }
+    const Steps steps(box_of(from.subspan(begin, end - begin)), keys.step_bits);
+    for (std::size_t k = begin; k < end; ++k) keys.set(k, s, steps.of(from[k]));
   }
-  hwy::Sorter()(keys.begin(), keys.size(), hwy::SortAscending());
-  const Key place_mask = (Key{1} << place_bits) - 1;
-  for (std::size_t k = 0; k < to.size(); ++k) to[k] = from[keys[k] & place_mask];
+  keys.sort();
+  for (std::size_t k = 0; k < to.size(); ++k) to[k] = from[keys.place(k)];
 }
 
 // The largest of kGroup, kGroup^2 ... of which there are several in `count`: where it is cut,
@@ -84,7 +134,7 @@ void cut_run(Points points, Points other) {
   Points from = points, to = other;
   for (std::size_t segment = kRun; segment > kGroup; segment /= kParts) {
     if (points.size() <= segment / kParts) continue;  // each is one part
-    sort_segments<std::uint32_t>(from, to, segment);
+    sort_segments(from, to, segment);
     std::swap(from, to);
   }
   if (from.data() != points.data()) std::copy(from.begin(), from.end(), points.begin());
@@ -93,9 +143,9 @@ void cut_run(Points points, Points other) {
 void cut(Points points, Points other) {
   if (points.size() <= kRun) return cut_run(points, other);
   if (points.size() <= kSmallKeys) {
-    sort_segments<std::uint32_t>(points, other, points.size());
+    sort_all<std::uint32_t>(points, other);
   } else {
-    sort_segments<std::uint64_t>(points, other, points.size());
+    sort_all<std::uint64_t>(points, other);
   }
   const std::size_t unit = unit_of(points.size());
   const std::size_t part = core::range_count(core::range_count(points.size(), unit), kParts) * unit;
@@ -119,8 +169,9 @@ std::vector<std::uint32_t> compact_order(std::span<const Vec3> points,
   });
   cut({copies.begin(), copies.end()}, {other.begin(), other.end()});
   std::vector<std::uint32_t> order(chosen.size());
-  std::transform(copies.begin(), copies.end(), order.begin(),
-                 [](const Point& p) { return p.number; });
+  core::parallel_for(order.size(), kRun, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) order[k] = copies[k].number;
+  });
   return order;
 }
 

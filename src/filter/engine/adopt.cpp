@@ -28,7 +28,7 @@ class Nearest {
     std::vector<std::uint32_t> nodes;
     for (;; r_sq *= kGrowth) {
       index_.within(at_, r_sq, nodes);
-      const bool all = nodes.size() == tree_.nodes(kLevels - 1);
+      const bool all = nodes.size() == tree_.nodes(kParents);
       r_sq_ = all ? std::numeric_limits<float>::infinity() : r_sq;
       found_.clear();
       for (const std::uint32_t node : nodes) look_into(node);
@@ -38,9 +38,9 @@ class Nearest {
 
  private:
   void look_into(std::size_t node) {
-    const std::size_t end = std::min(tree_.nodes(0), (node + 1) * kWidth);
+    const std::size_t end = std::min(tree_.nodes(kGroups), (node + 1) * kWidth);
     for (std::size_t group = node * kWidth; group < end; ++group) {
-      const float gap_sq = search::gap_sq(at_, tree_.box(0, group));
+      const float gap_sq = search::gap_sq(at_, tree_.box(kGroups, group));
       if (!search::chi_ball(gap_sq, r_sq_) || (is_full() && gap_sq > found_.back().d_sq)) continue;
       for (std::size_t k = group * kWidth; k < std::min(tree_.size(), (group + 1) * kWidth); ++k) {
         consider(tree_.order()[k]);

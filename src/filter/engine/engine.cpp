@@ -1,6 +1,7 @@
 #include "filter/engine/engine.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -16,14 +17,20 @@
 namespace psf::filter::engine {
 namespace {
 
-// Queries that share a search: as many as a node of the upper level has records.
+// Queries that share a search: as many as a parent has records.
 constexpr std::size_t kGrain = kWidth * kWidth;
 
 std::vector<search::Box> boxes_of(const Tree& tree) {
   std::vector<search::Box> boxes;
-  for (std::size_t k = 0; k < tree.nodes(kLevels - 1); ++k)
-    boxes.push_back(tree.box(kLevels - 1, k));
+  for (std::size_t k = 0; k < tree.nodes(kParents); ++k) boxes.push_back(tree.box(kParents, k));
   return boxes;
+}
+
+// Products and sums of products of values up to this are finite floats, which the bounds rely on.
+constexpr float kLargest = 1e18f;
+
+bool is_moderate(const Vec3& v) {
+  return std::max(std::max(std::abs(v.x), std::abs(v.y)), std::abs(v.z)) <= kLargest;
 }
 
 class TreeEngine final : public Engine {
@@ -32,8 +39,22 @@ class TreeEngine final : public Engine {
       : p_(problem),
         order_(search::compact_order(problem.records.position, problem.roles.queries)),
         tree_(problem.records, sources_of(problem, order_), ColumnPlan(problem.weights.terms())),
-        index_(boxes_of(tree_)),
-        all_sources_(order_.size() == tree_.size()) {}
+        all_sources_(order_.size() == tree_.size()),
+        index_(is_moderate() ? boxes_of(tree_) : std::vector<search::Box>()) {}
+
+  // Whether the values of all who take part are small enough.
+  [[nodiscard]] bool is_moderate() const {
+    if (!tree_.all_within(kLargest)) return false;
+    if (all_sources_) return true;
+    const Records& r = p_.records;
+    const ColumnPlan& plan = tree_.plan();
+    return std::all_of(order_.begin(), order_.end(), [&](std::uint32_t i) {
+      return engine::is_moderate(r.position[i]) &&
+             (!plan.normal || engine::is_moderate(r.normal[i])) &&
+             (!plan.reflectance || engine::is_moderate(r.reflectance[i])) &&
+             (!plan.direction || engine::is_moderate(r.direction[i]));
+    });
+  }
 
   void average(std::span<const Rgb> values, bool count_refusals, std::span<Rgb> out,
                std::span<std::uint32_t> neighbors, Statistics& statistics) override {
@@ -47,8 +68,9 @@ class TreeEngine final : public Engine {
       Statistics& counts = parts[begin / kGrain];
       for (std::size_t first = 0; first < queries.size(); first += kWidth) {
         const std::span some = queries.subspan(first, std::min(kWidth, queries.size() - first));
+        Own own;
         Packet packet;
-        fill(some, (begin + first) / kWidth, packet);
+        fill(some, (begin + first) / kWidth, own, packet);
         engine::average(tree_, p_.weights.terms(), nodes, packet);
         if (count_refusals) count(some, nodes, packet, counts);
         for (std::size_t k = 0; k < some.size(); ++k) {
@@ -63,6 +85,7 @@ class TreeEngine final : public Engine {
   static std::vector<std::uint32_t> sources_of(const Problem& problem,
                                                const std::vector<std::uint32_t>& queries) {
     std::vector<std::uint32_t> sources;
+    if (problem.roles.sources.size() == queries.size()) return queries;
     sources.reserve(problem.roles.sources.size());
     std::copy_if(queries.begin(), queries.end(), std::back_inserter(sources),
                  [&](std::uint32_t i) { return problem.roles.of[i] == Role::source; });
@@ -74,7 +97,7 @@ class TreeEngine final : public Engine {
                   std::vector<std::uint32_t>& nodes) const {
     float r = 0;
     for (const std::uint32_t i : queries) r = std::max(r, p_.radius[i]);
-    index_.within(all_sources_ ? tree_.box(kLevels - 1, begin / kGrain) : box_of(queries), r * r,
+    index_.within(all_sources_ ? tree_.box(kParents, begin / kGrain) : box_of(queries), r * r,
                   nodes);
   }
   [[nodiscard]] search::Box box_of(std::span<const std::uint32_t> queries) const {
@@ -89,17 +112,32 @@ class TreeEngine final : public Engine {
     return box;
   }
 
-  void fill(std::span<const std::uint32_t> queries, std::size_t number, Packet& packet) const {
+  // Columns and bounds of a packet that is no group of the tree.
+  struct Own {
+    alignas(64) float columns[kMaxColumns * kWidth];
+    alignas(64) float low[kMaxColumns * kWidth];  // every kWidth-th counts
+    alignas(64) float high[kMaxColumns * kWidth];
+  };
+
+  void fill(std::span<const std::uint32_t> queries, std::size_t number, Own& own,
+            Packet& packet) const {
+    const ColumnPlan& plan = tree_.plan();
     if (all_sources_) {
-      const float* group = tree_.group(number);
-      std::copy(group, group + tree_.plan().count * kWidth, &packet.columns[0][0]);
+      packet.columns = tree_.group(number);
+      packet.low = tree_.bounds(kGroups, number / kWidth) + number % kWidth;
+      packet.high = packet.low + plan.count * kWidth;
     } else {
-      tree_.plan().gather(p_.records, queries, &packet.columns[0][0]);
+      plan.gather(p_.records, queries, own.columns);
+      extremes(plan, plan.count, own.columns, own.columns, own.low, own.high);
+      packet.columns = own.columns;
+      packet.low = own.low;
+      packet.high = own.high;
     }
+    const float plane = p_.weights.terms().plane.value_or(0);
     for (std::size_t k = 0; k < kWidth; ++k) {
-      const std::uint32_t i = queries[std::min(k, queries.size() - 1)];
-      packet.r_sq[k] = k < queries.size() ? p_.radius[i] * p_.radius[i] : 0;
-      packet.plane_reach[k] = p_.weights.terms().plane.value_or(0) * p_.radius[i];
+      const float r_i = p_.radius[queries[std::min(k, queries.size() - 1)]];
+      packet.r_sq[k] = k < queries.size() ? r_i * r_i : 0;
+      packet.plane_reach[k] = plane * r_i;
       packet.count[k] = 0;
       for (auto& sum : packet.sum) sum[k] = 0;
     }
@@ -141,8 +179,8 @@ class TreeEngine final : public Engine {
   const Problem& p_;
   std::vector<std::uint32_t> order_;  // the queries in a compact order
   Tree tree_;
-  search::BoxIndex index_;  // over the nodes of the upper level
-  bool all_sources_;        // every query is one: then a packet is a group, and a range a node
+  bool all_sources_;        // every query is one: then a packet is a group, a range a parent
+  search::BoxIndex index_;  // over the parents
 };
 
 }  // namespace
@@ -154,7 +192,9 @@ PairCounts& PairCounts::operator+=(const PairCounts& other) {
 }
 
 std::unique_ptr<Engine> make(const Problem& problem) {
-  return std::make_unique<TreeEngine>(problem);
+  auto engine = std::make_unique<TreeEngine>(problem);
+  if (!engine->is_moderate()) return nullptr;
+  return engine;
 }
 
 }  // namespace psf::filter::engine

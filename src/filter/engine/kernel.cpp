@@ -31,29 +31,26 @@ HWY_INLINE void extremes_of(Tag tag, const float* lows, const float* highs, floa
   *high = hn::GetLane(hn::BitCast(kD, hn::MaxOfLanes(tag, greatest)));
 }
 
-void extremes_on(const ColumnPlan& plan, const float* lows, const float* highs, float* low,
-                 float* high) {
-  for (std::size_t c = 0; c < plan.count * kWidth; c += kWidth) {
-    if (plan.is_integer(c / kWidth)) {
-      extremes_of(kDI, lows + c, highs + c, low + c, high + c);
+void extremes_on(const ColumnPlan& plan, std::size_t columns, const float* lows, const float* highs,
+                 float* low, float* high) {
+  for (std::size_t c = 0; c < columns; ++c) {
+    const std::size_t row = c * kWidth;
+    if (plan.is_integer(c)) {
+      extremes_of(kDI, lows + row, highs + row, low + row, high + row);
     } else {
-      extremes_of(kD, lows + c, highs + c, low + c, high + c);
+      extremes_of(kD, lows + row, highs + row, low + row, high + row);
     }
   }
 }
 
-void average_on(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> nodes,
+void average_on(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
                 Packet& packet) {
-  for (std::size_t lane = 0; lane < kWidth; lane += kLanes) {
-    AverageWalk(tree, terms, packet, lane).run(nodes);
-  }
+  AverageWalk(tree, terms, packet).run(parents);
 }
 
-void count_on(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> nodes,
+void count_on(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
               const Packet& packet, PairCounts& counts) {
-  for (std::size_t lane = 0; lane < kWidth; lane += kLanes) {
-    CountWalk(tree, terms, packet, lane, counts).run(nodes);
-  }
+  CountWalk(tree, terms, packet, counts).run(parents);
 }
 
 }  // namespace psf::filter::engine::HWY_NAMESPACE
@@ -66,17 +63,17 @@ HWY_EXPORT(extremes_on);
 HWY_EXPORT(average_on);
 HWY_EXPORT(count_on);
 
-void extremes(const ColumnPlan& plan, const float* lows, const float* highs, float* low,
-              float* high) {
-  HWY_DYNAMIC_DISPATCH(extremes_on)(plan, lows, highs, low, high);
+void extremes(const ColumnPlan& plan, std::size_t columns, const float* lows, const float* highs,
+              float* low, float* high) {
+  HWY_DYNAMIC_DISPATCH(extremes_on)(plan, columns, lows, highs, low, high);
 }
-void average(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> nodes,
+void average(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
              Packet& packet) {
-  HWY_DYNAMIC_DISPATCH(average_on)(tree, terms, nodes, packet);
+  HWY_DYNAMIC_DISPATCH(average_on)(tree, terms, parents, packet);
 }
-void count_pairs(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> nodes,
+void count_pairs(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
                  const Packet& packet, PairCounts& counts) {
-  HWY_DYNAMIC_DISPATCH(count_on)(tree, terms, nodes, packet, counts);
+  HWY_DYNAMIC_DISPATCH(count_on)(tree, terms, parents, packet, counts);
 }
 
 }  // namespace psf::filter::engine

@@ -14,12 +14,15 @@
 
 namespace psf::filter::engine {
 
-// A query a lane. What is averaged for a query, and in which order, follows from that query, the
-// tree and the list of families alone: not from its neighbours in the packet nor from how many
-// lanes a vector has.
+// A query a lane. What is averaged for a query, and in which order, follows from the queries of its
+// packet, the tree and the list of parents alone, not from how many lanes a vector has.
 struct Packet {
-  alignas(64) float columns[kMaxColumns][kWidth];  // as in the tree's plan
-  alignas(64) float r_sq[kWidth];                  // squared world units; 0: nothing to find
+  // (columns, 16), as in the tree's plan, and the least and the greatest value of each column, at
+  // low[column * kWidth] and high[column * kWidth]; borrowed.
+  const float* columns;
+  const float* low;
+  const float* high;
+  alignas(64) float r_sq[kWidth];  // squared world units; 0: nothing to find
   alignas(64) float plane_reach[kWidth];           // t r_i of `plane`
 
   // What the walk adds to: of the values that pass, and how many.
@@ -37,18 +40,18 @@ struct PairCounts {
   PairCounts& operator+=(const PairCounts& other);
 };
 
-// The least value of each of `lows`, (columns, 16), and the greatest of each of `highs`, to
-// low[column * kWidth] and high[column * kWidth].
-void extremes(const ColumnPlan& plan, const float* lows, const float* highs, float* low,
-              float* high);
+// The least value of each of `columns` rows of `lows`, (columns, 16), and the greatest of each of
+// `highs`, to low[column * kWidth] and high[column * kWidth].
+void extremes(const ColumnPlan& plan, std::size_t columns, const float* lows, const float* highs,
+              float* low, float* high);
 
-// Adds up, for every lane, the sources below the given nodes of the tree's upper level that pass
-// chi and every term that is on. `nodes` ascend.
-void average(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> nodes,
+// Adds up, for every lane, the sources below the given parents of the tree that pass chi and every
+// term that is on.
+void average(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
              Packet& packet);
 
-// Adds to `counts` the pairs of the packet's queries with the sources below the given nodes.
-void count_pairs(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> nodes,
+// Adds to `counts` the pairs of the packet's queries with the sources below the given parents.
+void count_pairs(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
                  const Packet& packet, PairCounts& counts);
 
 }  // namespace psf::filter::engine

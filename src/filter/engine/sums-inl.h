@@ -6,7 +6,7 @@
 #define PSF_FILTER_ENGINE_SUMS_INL_H
 #endif
 
-#include "filter/engine/terms-inl.h"
+#include "filter/engine/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace psf::filter::engine::HWY_NAMESPACE {
@@ -50,21 +50,58 @@ HWY_INLINE VD add_where(MD mask, VD sum, VD value) {
 #endif
 }
 
-HWY_INLINE hn::Vec<DI> add_one_where(M mask, hn::Vec<DI> counts) {
+HWY_INLINE VI add_one_where(M mask, VI count) {
   const auto lanes = hn::RebindMask(kDI, mask);
 #if HWY_TARGET == HWY_AVX3
-  return hn::IfThenElse(lanes, hn::Add(counts, hn::Set(kDI, 1)), counts);
+  return hn::IfThenElse(lanes, hn::Add(count, hn::Set(kDI, 1)), count);
 #else
-  return hn::Sub(counts, hn::VecFromMask(kDI, lanes));
+  return hn::Sub(count, hn::VecFromMask(kDI, lanes));
 #endif
 }
 
-HWY_INLINE std::uint32_t bits_of(M mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(kD, mask, bytes);
-  return static_cast<std::uint32_t>(bytes[0]) | static_cast<std::uint32_t>(bytes[1]) << 8;
-}
+// Of nodes that pass as a whole for every query of a packet: sixteen sums, one for each place of a
+// family, however many lanes a vector has.
+class WholeSums {
+ public:
+  HWY_INLINE WholeSums() {
+    for (auto& sum : sum_) {
+      for (double& at_place : sum) at_place = 0;
+    }
+  }
 
+  // `sums`: (3, 16) of a family; those of the places of `bits` are added.
+  HWY_INLINE void add(const double* sums, std::uint32_t bits, std::size_t sources) {
+    sources_ += sources;
+    for (std::size_t place = 0; place < kWidth; place += kLanes) {
+      const Parts parts(mask_of(bits >> place));
+      for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t part = 0; part < kParts; ++part) {
+          const std::size_t at = place + part * kDoubles;
+          const VD value = hn::Load(kDD, sums + c * kWidth + at);
+          hn::Store(add_where(parts.mask[part], hn::Load(kDD, sum_[c] + at), value), kDD,
+                    sum_[c] + at);
+        }
+      }
+    }
+  }
+
+  // To every query.
+  HWY_INLINE void add_to(Packet& packet) const {
+    if (sources_ == 0) return;
+    for (std::size_t c = 0; c < 3; ++c) {
+      double total = 0;
+      for (const double at_place : sum_[c]) total += at_place;
+      for (double& sum : packet.sum[c]) sum += total;
+    }
+    for (std::int32_t& count : packet.count) count += static_cast<std::int32_t>(sources_);
+  }
+
+ private:
+  alignas(64) double sum_[3][kWidth];
+  std::size_t sources_ = 0;
+};
+
+// Of the queries in some lanes of a packet.
 class Sums {
  public:
   Sums(Packet& packet, std::size_t lane) : packet_(packet), lane_(lane) {}
@@ -73,55 +110,38 @@ class Sums {
     hn::Store(hn::VecFromMask(kDI, hn::RebindMask(kDI, mask)), kDI, packet_.met_itself + lane_);
   }
 
-  // One value, (3, 16) and this place of it, that stands for `count` sources.
-  HWY_INLINE void add(M mask, const double* value, std::size_t count) {
-    const Parts parts(mask);
-    for (std::size_t c = 0; c < 3; ++c) {
-      const VD v = hn::Set(kDD, value[c * kWidth]);
-      for (std::size_t part = 0; part < kParts; ++part) {
-        double* sum = sums(c, part);
-        hn::Store(add_where(parts.mask[part], hn::Load(kDD, sum), v), kDD, sum);
-      }
-    }
-    const auto more = hn::IfThenElseZero(hn::RebindMask(kDI, mask),
-                                         hn::Set(kDI, static_cast<std::int32_t>(count)));
-    hn::Store(hn::Add(hn::Load(kDI, counts()), more), kDI, counts());
-  }
-
-  // The values of a group, one after the other, each where its mask(k) is set.
-  template <class Mask>
-  HWY_INLINE void add(const Mask& mask, const double* values, std::size_t count) {
-    VD sum[3][kParts];
+  // walk(add) calls add(lanes, value), which adds a value in its place of (3, 16) to some lanes.
+  template <class Walk>
+  HWY_INLINE void add(const Walk& walk) {
+    VD total[3][kParts];  // in registers meanwhile
     for (std::size_t c = 0; c < 3; ++c) {
       for (std::size_t part = 0; part < kParts; ++part) {
-        sum[c][part] = hn::Load(kDD, sums(c, part));
+        total[c][part] = hn::Load(kDD, sum(c, part));
       }
     }
-    auto counted = hn::Load(kDI, counts());
-    for (std::size_t k = 0; k < count; ++k) {
-      const M m = mask(k);
-      const Parts parts(m);
+    VI counted = hn::Load(kDI, packet_.count + lane_);
+    walk([&](M lanes, const double* value) HWY_ATTR {
+      const Parts parts(lanes);
       for (std::size_t c = 0; c < 3; ++c) {
-        const VD v = hn::Set(kDD, values[c * kWidth + k]);
+        const VD v = hn::Set(kDD, value[c * kWidth]);
         for (std::size_t part = 0; part < kParts; ++part) {
-          sum[c][part] = add_where(parts.mask[part], sum[c][part], v);
+          total[c][part] = add_where(parts.mask[part], total[c][part], v);
         }
       }
-      counted = add_one_where(m, counted);
-    }
+      counted = add_one_where(lanes, counted);
+    });
     for (std::size_t c = 0; c < 3; ++c) {
       for (std::size_t part = 0; part < kParts; ++part) {
-        hn::Store(sum[c][part], kDD, sums(c, part));
+        hn::Store(total[c][part], kDD, sum(c, part));
       }
     }
-    hn::Store(counted, kDI, counts());
+    hn::Store(counted, kDI, packet_.count + lane_);
   }
 
  private:
-  [[nodiscard]] HWY_INLINE double* sums(std::size_t c, std::size_t part) const {
+  [[nodiscard]] HWY_INLINE double* sum(std::size_t c, std::size_t part) const {
     return packet_.sum[c] + lane_ + part * kDoubles;
   }
-  [[nodiscard]] HWY_INLINE std::int32_t* counts() const { return packet_.count + lane_; }
 
   Packet& packet_;
   std::size_t lane_;

@@ -1,5 +1,5 @@
-// Every term of w_ij and chi in vectors: for a pair as weights.h has them, and for a node by its
-// bounds. A query a lane.
+// Every term of w_ij and chi in vectors: `pass` for pairs, as weights.h has them, a query a lane;
+// `judge` for a packet and a family of nodes by their bounds, a node a lane.
 #if defined(PSF_FILTER_ENGINE_TERMS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSF_FILTER_ENGINE_TERMS_INL_H
 #undef PSF_FILTER_ENGINE_TERMS_INL_H
@@ -7,58 +7,18 @@
 #define PSF_FILTER_ENGINE_TERMS_INL_H
 #endif
 
-#include <hwy/highway.h>
-
-#include "filter/engine/kernel.h"
+#include "filter/engine/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace psf::filter::engine::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<float, kWidth>;
-using DI = hn::RebindToSigned<D>;
-using V = hn::Vec<D>;
-using M = hn::Mask<D>;
-constexpr D kD;
-constexpr DI kDI;
-constexpr std::size_t kLanes = hn::MaxLanes(kD);
-
-// What the bounds of a node say of a term, lane by lane: no source below passes, every one does.
+// What bounds say of a term, node by node: no pair of a query and a source below passes; every one
+// does.
 struct Verdict {
   M none, every;
 };
 
-HWY_INLINE V broadcast(const float* value) {
-  return hn::Set(kD, *value);
-}
-HWY_INLINE hn::Vec<DI> broadcast_bits(const float* value) {
-  return hn::BitCast(kDI, broadcast(value));
-}
-// A source's columns, the same for every lane.
-struct OneSource {
-  const float* at;
-  [[nodiscard]] HWY_INLINE V column(std::size_t c) const { return broadcast(at + c * kWidth); }
-};
-// A source a lane.
-struct SourceALane {
-  const float* at;
-  [[nodiscard]] HWY_INLINE V column(std::size_t c) const { return hn::Load(kD, at + c * kWidth); }
-};
-
-HWY_INLINE V sum_of_products(V ax, V bx, V ay, V by, V az, V bz) {
-  return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
-}
-
-// Least and greatest values of one column at nodes, `row` floats apart.
-struct Bounds {
-  const float* low;
-  const float* high;
-  [[nodiscard]] HWY_INLINE Bounds column(std::size_t c) const {
-    return {low + c * kWidth, high + c * kWidth};
-  }
-};
-
-// Squared distance of the queries' values to a source's, in three columns: chi and `reflectance`.
+// Squared distance in three columns: chi and `reflectance`.
 struct Distance {
   V x, y, z;
 
@@ -69,22 +29,17 @@ struct Distance {
     const V dz = hn::Sub(z, source.column(2));
     return sum_of_products(dx, dx, dy, dy, dz, dz);
   }
-  // The least and the greatest of a node.
-  HWY_INLINE void range(const Bounds& node, V& nearest, V& farthest) const {
-    V near_x, near_y, near_z, far_x, far_y, far_z;
-    axis(x, node, near_x, far_x);
-    axis(y, node.column(1), near_y, far_y);
-    axis(z, node.column(2), near_z, far_z);
-    nearest = sum_of_products(near_x, near_x, near_y, near_y, near_z, near_z);
-    farthest = sum_of_products(far_x, far_x, far_y, far_y, far_z, far_z);
-  }
-
- private:
-  static HWY_INLINE void axis(V q, const Bounds& node, V& nearest, V& farthest) {
-    const V above_low = hn::Sub(q, broadcast(node.low));
-    const V above_high = hn::Sub(q, broadcast(node.high));
-    nearest = hn::Max(hn::Max(above_high, hn::Neg(above_low)), hn::Zero(kD));
-    farthest = hn::Max(hn::Abs(above_low), hn::Abs(above_high));
+  // Of any query to any source below a node. first: of the three columns.
+  static HWY_INLINE Interval between(const PacketBounds& queries, const FamilyBounds& nodes,
+                                     std::size_t first) {
+    V near[3], far[3];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Interval d = difference(nodes.interval(first + c), queries.interval(first + c));
+      near[c] = hn::Max(hn::Max(d.low, hn::Neg(d.high)), hn::Zero(kD));
+      far[c] = hn::Max(d.high, hn::Neg(d.low));
+    }
+    return {sum_of_products(near[0], near[0], near[1], near[1], near[2], near[2]),
+            sum_of_products(far[0], far[0], far[1], far[1], far[2], far[2])};
   }
 };
 
@@ -96,14 +51,15 @@ struct Chi {
   [[nodiscard]] HWY_INLINE M pass(const Source& source) const {
     return hn::Lt(distance.to(source), r_sq);
   }
-  [[nodiscard]] HWY_INLINE Verdict judge(const Bounds& node) const {
-    V nearest, farthest;
-    distance.range(node, nearest, farthest);
-    return {hn::Ge(nearest, r_sq), hn::Lt(farthest, r_sq)};
+  static HWY_INLINE Verdict judge(const PacketBounds& queries, const FamilyBounds& nodes) {
+    const Interval d_sq = Distance::between(queries, nodes, 0);
+    return {hn::Ge(d_sq.low, hn::Set(kD, queries.greatest_r_sq)),
+            hn::Lt(d_sq.high, hn::Set(kD, queries.least_r_sq))};
   }
 };
 
 struct Reflectance {
+  std::size_t first;
   Distance distance;
   V t_sq;
 
@@ -111,15 +67,16 @@ struct Reflectance {
   [[nodiscard]] HWY_INLINE M pass(const Source& source) const {
     return hn::Le(distance.to(source), t_sq);
   }
-  [[nodiscard]] HWY_INLINE Verdict judge(const Bounds& node) const {
-    V nearest, farthest;
-    distance.range(node, nearest, farthest);
-    return {hn::Gt(nearest, t_sq), hn::Le(farthest, t_sq)};
+  [[nodiscard]] HWY_INLINE Verdict judge(const PacketBounds& queries,
+                                         const FamilyBounds& nodes) const {
+    const Interval d_sq = Distance::between(queries, nodes, first);
+    return {hn::Gt(d_sq.low, t_sq), hn::Le(d_sq.high, t_sq)};
   }
 };
 
 // `normal` and `direction`.
 struct Cosine {
+  std::size_t first;
   V x, y, z, t;
 
   template <class Source>
@@ -127,41 +84,38 @@ struct Cosine {
     return hn::Ge(sum_of_products(x, source.column(0), y, source.column(1), z, source.column(2)),
                   t);
   }
-  [[nodiscard]] HWY_INLINE Verdict judge(const Bounds& node) const {
-    V low_x, low_y, low_z, high_x, high_y, high_z;
-    axis(x, node, low_x, high_x);
-    axis(y, node.column(1), low_y, high_y);
-    axis(z, node.column(2), low_z, high_z);
-    const V least = hn::Add(hn::Add(low_x, low_y), low_z);
-    const V greatest = hn::Add(hn::Add(high_x, high_y), high_z);
-    return {hn::Lt(greatest, t), hn::Ge(least, t)};
-  }
-
- private:
-  static HWY_INLINE void axis(V q, const Bounds& node, V& least, V& greatest) {
-    const V a = hn::Mul(q, broadcast(node.low)), b = hn::Mul(q, broadcast(node.high));
-    least = hn::Min(a, b);
-    greatest = hn::Max(a, b);
+  [[nodiscard]] HWY_INLINE Verdict judge(const PacketBounds& queries,
+                                         const FamilyBounds& nodes) const {
+    const auto along = [&](std::size_t c) {
+      return product(queries.interval(first + c), nodes.interval(first + c));
+    };
+    const Interval cosine = sum(along(0), along(1), along(2));
+    return {hn::Lt(cosine.high, t), hn::Ge(cosine.low, t)};
   }
 };
 
 // `visibility` and `material`.
 struct Equal {
-  hn::Vec<DI> bits;
+  std::size_t first;
+  VI bits;
 
   template <class Source>
   [[nodiscard]] HWY_INLINE M pass(const Source& source) const {
     return hn::RebindMask(kD, hn::Eq(bits, hn::BitCast(kDI, source.column(0))));
   }
-  [[nodiscard]] HWY_INLINE Verdict judge(const Bounds& node) const {
-    const auto low = broadcast_bits(node.low), high = broadcast_bits(node.high);
-    const auto outside = hn::Or(hn::Lt(bits, low), hn::Gt(bits, high));
-    const auto only = hn::And(hn::Eq(bits, low), hn::Eq(bits, high));
-    return {hn::RebindMask(kD, outside), hn::RebindMask(kD, only)};
+  [[nodiscard]] HWY_INLINE Verdict judge(const PacketBounds& queries,
+                                         const FamilyBounds& nodes) const {
+    const Interval q = queries.interval(first), n = nodes.interval(first);
+    const VI q_low = hn::BitCast(kDI, q.low), q_high = hn::BitCast(kDI, q.high);
+    const VI n_low = hn::BitCast(kDI, n.low), n_high = hn::BitCast(kDI, n.high);
+    const auto apart = hn::Or(hn::Gt(n_low, q_high), hn::Lt(n_high, q_low));
+    const auto same = hn::And(hn::Eq(n_low, q_high), hn::Eq(n_high, q_low));
+    return {hn::RebindMask(kD, apart), hn::RebindMask(kD, same)};
   }
 };
 
 struct HitDistance {
+  std::size_t first;
   V h, t;
 
   template <class Source>
@@ -171,22 +125,24 @@ struct HitDistance {
     const M close = hn::Le(hn::Abs(hn::Sub(h, other)), hn::Mul(t, longer));
     return hn::Or(hn::Eq(h, other), hn::And(close, hn::IsFinite(longer)));
   }
-  // By the greatest difference and the least of the longer ones, and the other way round.
-  [[nodiscard]] HWY_INLINE Verdict judge(const Bounds& node) const {
-    const V low = broadcast(node.low), high = broadcast(node.high);
-    const V above_low = hn::Sub(h, low), above_high = hn::Sub(h, high);
-    const V most = hn::Max(hn::Abs(above_low), hn::Abs(above_high));
-    const V fewest = hn::Max(above_high, hn::Neg(above_low));
-    const V longest = hn::Max(h, high);
-    const M only = hn::And(hn::Eq(h, low), hn::Eq(h, high));
-    const M close = hn::And(hn::Le(most, hn::Mul(t, hn::Max(h, low))), hn::IsFinite(longest));
+  // By the greatest difference and the least of the longer ones, and the other way round. Where
+  // misses (infinity) meet, differences are NaN, and no comparison holds.
+  [[nodiscard]] HWY_INLINE Verdict judge(const PacketBounds& queries,
+                                         const FamilyBounds& nodes) const {
+    const Interval q = queries.interval(first), n = nodes.interval(first);
+    const Interval d = difference(n, q);
+    const V most = hn::Max(d.high, hn::Neg(d.low)), fewest = hn::Max(d.low, hn::Neg(d.high));
+    const V longest = hn::Max(q.high, n.high);
+    const M same = hn::And(hn::Eq(n.low, q.high), hn::Eq(n.high, q.low));
+    const M close = hn::And(hn::Le(most, hn::Mul(t, hn::Max(q.low, n.low))), hn::IsFinite(longest));
     const M apart = hn::And(hn::Gt(fewest, hn::Mul(t, longest)), hn::Gt(fewest, hn::Zero(kD)));
-    return {apart, hn::Or(only, close)};
+    return {apart, hn::Or(same, close)};
   }
 };
 
 struct Plane {
-  Distance position;  // of the query
+  std::size_t normal;  // its first column; that of the sources' x is 0
+  Distance position;   // of the query
   V n_x, n_y, n_z, reach;
 
   template <class Source>
@@ -196,25 +152,95 @@ struct Plane {
                                   hn::Sub(source.column(2), position.z), n_z);
     return hn::Le(hn::Abs(off), reach);
   }
-  [[nodiscard]] HWY_INLINE Verdict judge(const Bounds& node) const {
-    V low_x, low_y, low_z, high_x, high_y, high_z;
-    axis(position.x, n_x, node, low_x, high_x);
-    axis(position.y, n_y, node.column(1), low_y, high_y);
-    axis(position.z, n_z, node.column(2), low_z, high_z);
-    const V least = hn::Add(hn::Add(low_x, low_y), low_z);
-    const V greatest = hn::Add(hn::Add(high_x, high_y), high_z);
-    const M every = hn::And(hn::Le(hn::Abs(least), reach), hn::Le(hn::Abs(greatest), reach));
-    const M none = hn::Or(hn::Gt(least, reach), hn::Lt(greatest, hn::Neg(reach)));
-    return {none, every};
+  [[nodiscard]] HWY_INLINE Verdict judge(const PacketBounds& queries,
+                                         const FamilyBounds& nodes) const {
+    const auto along = [&](std::size_t c) {
+      return product(difference(nodes.interval(c), queries.interval(c)),
+                     queries.interval(normal + c));
+    };
+    const Interval off = sum(along(0), along(1), along(2));
+    const V least = hn::Set(kD, queries.least_reach), most = hn::Set(kD, queries.greatest_reach);
+    return {hn::Or(hn::Gt(off.low, most), hn::Lt(off.high, hn::Neg(most))),
+            hn::And(hn::Le(hn::Abs(off.low), least), hn::Le(hn::Abs(off.high), least))};
+  }
+};
+
+// The terms that are on, as the queries in some lanes of a packet see them. Term k has bit k, in
+// the order of kTermNames.
+class Terms {
+ public:
+  Terms(const ColumnPlan& plan, const WeightTerms& on, const Packet& packet, std::size_t lane)
+      : plan_(plan), on_(on), packet_(packet), lane_(lane) {
+    const bool by[kTermCount] = {on.normal.has_value(),
+                                 on.reflectance.has_value(),
+                                 on.visibility,
+                                 on.hit_distance.has_value(),
+                                 on.plane.has_value(),
+                                 on.direction.has_value(),
+                                 on.material};
+    for (std::size_t k = 0; k < kTermCount; ++k) bits_ |= std::uint32_t{by[k]} << k;
+  }
+
+  [[nodiscard]] HWY_INLINE std::uint32_t bits() const { return bits_; }
+  [[nodiscard]] HWY_INLINE Chi chi() const {
+    return {distance(0), hn::Load(kD, packet_.r_sq + lane_)};
+  }
+  // For which queries the pair (i, i) passes chi and all terms.
+  [[nodiscard]] HWY_INLINE M self() const {
+    const auto own = [this](std::size_t c) { return SourceALane{packet_.columns + c * kWidth + lane_}; };
+    M pass = chi().pass(own(0));
+    each(bits_, [&](std::size_t, const auto& term, std::size_t c) {
+      pass = hn::And(pass, term.pass(own(c)));
+    });
+    return pass;
+  }
+
+  // Calls visit(k, term, first column of the sources that it looks at) for the terms of `bits`.
+  template <class Visit>
+  HWY_INLINE void each(std::uint32_t bits, const Visit& visit) const {
+    const auto wants = [bits](std::size_t k) { return (bits >> k & 1) != 0; };
+    if (wants(0)) visit(std::size_t{0}, cosine(*plan_.normal, *on_.normal), *plan_.normal);
+    if (wants(1)) {
+      const std::size_t c = *plan_.reflectance;
+      const float t = *on_.reflectance;
+      visit(std::size_t{1}, Reflectance{c, distance(c), hn::Set(kD, t * t)}, c);
+    }
+    if (wants(2)) visit(std::size_t{2}, equal(*plan_.visibility), *plan_.visibility);
+    if (wants(3)) {
+      const std::size_t c = *plan_.hit_distance;
+      visit(std::size_t{3}, HitDistance{c, column(c), hn::Set(kD, *on_.hit_distance)}, c);
+    }
+    if (wants(4)) {
+      const std::size_t n = *plan_.normal;
+      const V reach = hn::Load(kD, packet_.plane_reach + lane_);
+      visit(std::size_t{4}, Plane{n, distance(0), column(n), column(n + 1), column(n + 2), reach},
+            std::size_t{0});
+    }
+    if (wants(5)) {
+      visit(std::size_t{5}, cosine(*plan_.direction, *on_.direction), *plan_.direction);
+    }
+    if (wants(6)) visit(std::size_t{6}, equal(*plan_.material), *plan_.material);
   }
 
  private:
-  static HWY_INLINE void axis(V q, V n, const Bounds& node, V& least, V& greatest) {
-    const V a = hn::Mul(hn::Sub(broadcast(node.low), q), n);
-    const V b = hn::Mul(hn::Sub(broadcast(node.high), q), n);
-    least = hn::Min(a, b);
-    greatest = hn::Max(a, b);
+  [[nodiscard]] HWY_INLINE V column(std::size_t c) const {
+    return hn::Load(kD, packet_.columns + c * kWidth + lane_);
   }
+  [[nodiscard]] HWY_INLINE Distance distance(std::size_t c) const {
+    return {column(c), column(c + 1), column(c + 2)};
+  }
+  [[nodiscard]] HWY_INLINE Cosine cosine(std::size_t c, float t) const {
+    return {c, column(c), column(c + 1), column(c + 2), hn::Set(kD, t)};
+  }
+  [[nodiscard]] HWY_INLINE Equal equal(std::size_t c) const {
+    return {c, hn::BitCast(kDI, column(c))};
+  }
+
+  const ColumnPlan& plan_;
+  const WeightTerms& on_;
+  const Packet& packet_;
+  std::size_t lane_;
+  std::uint32_t bits_ = 0;
 };
 
 }  // namespace psf::filter::engine::HWY_NAMESPACE

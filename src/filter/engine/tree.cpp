@@ -1,70 +1,102 @@
 #include "filter/engine/tree.h"
 
-#include <algorithm>
-
 #include "core/parallel.h"
 #include "filter/engine/kernel.h"
 
 namespace psf::filter::engine {
 namespace {
 
-constexpr std::size_t kGrain = 16;  // families of nodes a range
+constexpr std::size_t kGrain = 16;  // parents a range
+constexpr std::size_t kQuad = kRecordsBelow[kQuads];
 
 }  // namespace
 
 Tree::Tree(const Records& records, std::vector<std::uint32_t> order, const ColumnPlan& plan)
     : plan_(plan), order_(std::move(order)) {
-  std::size_t nodes = size();
-  for (Level& level : levels_) {
-    level.nodes = nodes = core::range_count(nodes, kWidth);
-    const std::size_t families = core::range_count(nodes, kWidth);
-    level.bounds = core::Buffer<float>(families * 2 * plan_.count * kWidth);
-    level.sums = core::Buffer<double>(families * 3 * kWidth);
+  for (const LevelName level : {kQuads, kGroups, kParents}) {
+    Level& l = levels_[level];
+    l.nodes = core::range_count(size(), kRecordsBelow[level]);
+    const std::size_t families = core::range_count(l.nodes, kWidth);
+    l.bounds = core::Buffer<float>(families * 2 * columns(level) * kWidth);
+    l.sums = core::Buffer<double>(families * 3 * kWidth);
   }
-  leaves_ = core::Buffer<float>(levels_[0].nodes * plan_.count * kWidth);
-  values_ = core::Buffer<double>(levels_[0].nodes * 3 * kWidth);
+  leaves_ = core::Buffer<float>(nodes(kGroups) * plan_.count * kWidth);
+  values_ = core::Buffer<double>(nodes(kGroups) * 3 * kWidth);
 
   const std::span<const std::uint32_t> all = order_;
-  const std::size_t families = core::range_count(levels_[0].nodes, kWidth);
-  core::parallel_for(families, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t g = begin * kWidth; g < std::min(levels_[0].nodes, end * kWidth); ++g) {
-      const std::size_t first = g * kWidth;
-      plan_.gather(records, all.subspan(first, std::min(kWidth, size() - first)),
+  core::parallel_for(nodes(kParents), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t g = begin * kWidth; g < std::min(nodes(kGroups), end * kWidth); ++g) {
+      plan_.gather(records, all.subspan(g * kWidth, size_of(kGroups, g)),
                    &leaves_[g * plan_.count * kWidth]);
+      bound_quads(g);
+      bound_group(g);
     }
-    for (std::size_t family = begin; family < end; ++family) bound_family(0, family);
   });
-  for (std::size_t k = 1; k < kLevels; ++k) {
-    for (std::size_t family = 0; family < core::range_count(levels_[k].nodes, kWidth); ++family) {
-      bound_family(k, family);
+  for (const LevelName level : {kQuads, kGroups}) fill_last_family(level);
+  for (std::size_t p = 0; p < nodes(kParents); ++p) bound_parent(p);
+  fill_last_family(kParents);
+}
+
+// A group is filled up with its last record, so all its four quads have bounds.
+void Tree::bound_quads(std::size_t g) {
+  constexpr std::size_t kInGroup = kWidth / kQuad;
+  float* low = &levels_[kQuads].bounds[g / kInGroup * 6 * kWidth] + g % kInGroup * kQuad;
+  float* high = low + 3 * kWidth;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float* x = group(g) + c * kWidth;
+    for (std::size_t quad = 0; quad < kInGroup; ++quad, x += kQuad) {
+      low[c * kWidth + quad] = std::min(std::min(x[0], x[1]), std::min(x[2], x[3]));
+      high[c * kWidth + quad] = std::max(std::max(x[0], x[1]), std::max(x[2], x[3]));
     }
   }
 }
 
-// Bounds of the nodes of a family from what is below them: 16 records or 16 children. Places
-// without a node get the bounds of the last one.
-void Tree::bound_family(std::size_t k, std::size_t family) {
-  Level& level = levels_[k];
-  const std::size_t rows = plan_.count * kWidth;
-  float* low = &level.bounds[family * 2 * rows];
-  for (std::size_t place = 0; place < kWidth; ++place) {
-    const std::size_t node = std::min(family * kWidth + place, level.nodes - 1);
-    const float* lows = k == 0 ? group(node) : &levels_[k - 1].bounds[node * 2 * rows];
-    const float* highs = k == 0 ? lows : lows + rows;
-    extremes(plan_, lows, highs, low + place, low + rows + place);
+void Tree::bound_group(std::size_t g) {
+  float* low = &levels_[kGroups].bounds[g / kWidth * 2 * plan_.count * kWidth] + g % kWidth;
+  extremes(plan_, plan_.count, group(g), group(g), low, low + plan_.count * kWidth);
+}
+
+void Tree::bound_parent(std::size_t p) {
+  const float* lows = bounds(kGroups, p);
+  float* low = &levels_[kParents].bounds[p / kWidth * 6 * kWidth] + p % kWidth;
+  extremes(plan_, 3, lows, lows + plan_.count * kWidth, low, low + 3 * kWidth);
+}
+
+void Tree::fill_last_family(LevelName level) {
+  const std::size_t filled = (levels_[level].nodes - 1) % kWidth + 1;
+  // Quads are bounded four at a time, the last ones from repeated records.
+  const std::size_t first = level == kQuads ? core::range_count(filled, kQuad) * kQuad : filled;
+  float* row =
+      &levels_[level].bounds[(levels_[level].nodes - 1) / kWidth * 2 * columns(level) * kWidth];
+  for (std::size_t c = 0; c < 2 * columns(level); ++c, row += kWidth) {
+    std::fill(row + first, row + kWidth, row[first - 1]);
   }
 }
 
-search::Box Tree::box(std::size_t k, std::size_t node) const {
-  const float* low = bounds(k, node / kWidth) + node % kWidth;
-  const float* high = low + plan_.count * kWidth;
+bool Tree::all_within(float largest) const {
+  const std::size_t families = core::range_count(nodes(kGroups), kWidth);
+  for (std::size_t c = 0; c < plan_.count; ++c) {
+    if (plan_.is_integer(c) || c == plan_.hit_distance) continue;
+    for (std::size_t family = 0; family < families; ++family) {
+      const float* low = bounds(kGroups, family) + c * kWidth;
+      const float* high = low + plan_.count * kWidth;
+      for (std::size_t k = 0; k < kWidth; ++k) {
+        if (!(low[k] >= -largest && high[k] <= largest)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+search::Box Tree::box(LevelName level, std::size_t node) const {
+  const float* low = bounds(level, node / kWidth) + node % kWidth;
+  const float* high = low + columns(level) * kWidth;
   return {{low[0], low[kWidth], low[2 * kWidth]}, {high[0], high[kWidth], high[2 * kWidth]}};
 }
 
 void Tree::set_values(std::span<const Rgb> values, std::span<const float> area) {
-  const std::size_t families = core::range_count(levels_[0].nodes, kWidth);
-  core::parallel_for(families, kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t g = begin * kWidth; g < std::min(levels_[0].nodes, end * kWidth); ++g) {
+  core::parallel_for(nodes(kParents), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t g = begin * kWidth; g < std::min(nodes(kGroups), end * kWidth); ++g) {
       double* out = &values_[g * 3 * kWidth];
       for (std::size_t k = 0; k < kWidth; ++k) {
         const std::size_t p = g * kWidth + k;
@@ -75,27 +107,27 @@ void Tree::set_values(std::span<const Rgb> values, std::span<const float> area) 
         out[2 * kWidth + k] = weight * double{values[j].z};
       }
     }
-    for (std::size_t family = begin; family < end; ++family) sum_family(0, family);
+    for (std::size_t p = begin; p < end; ++p) sum_parent(p);
   });
-  for (std::size_t k = 1; k < kLevels; ++k) {
-    for (std::size_t family = 0; family < core::range_count(levels_[k].nodes, kWidth); ++family) {
-      sum_family(k, family);
-    }
-  }
 }
 
-void Tree::sum_family(std::size_t k, std::size_t family) {
-  Level& level = levels_[k];
-  for (std::size_t node = family * kWidth; node < std::min(level.nodes, (family + 1) * kWidth);
-       ++node) {
-    const double* below = k == 0 ? this->values(node) : &levels_[k - 1].sums[node * 3 * kWidth];
-    const std::size_t children =
-        k == 0 ? kWidth : std::min(kWidth, levels_[k - 1].nodes - node * kWidth);
-    for (std::size_t c = 0; c < 3; ++c) {
-      double sum = 0;
-      for (std::size_t place = 0; place < children; ++place) sum += below[c * kWidth + place];
-      level.sums[(family * 3 + c) * kWidth + node % kWidth] = sum;
+// The sums of its quads, of its groups, and its own.
+void Tree::sum_parent(std::size_t p) {
+  const std::size_t last = std::min(nodes(kGroups), (p + 1) * kWidth);
+  for (std::size_t c = 0; c < 3; ++c) {
+    double parent = 0;
+    for (std::size_t g = p * kWidth; g < last; ++g) {
+      const double* below = values(g) + c * kWidth;
+      double whole = 0;
+      for (std::size_t k = g * kQuad; k < (g + 1) * kQuad; ++k, below += kQuad) {
+        const double quad = ((below[0] + below[1]) + below[2]) + below[3];
+        levels_[kQuads].sums[(k / kWidth * 3 + c) * kWidth + k % kWidth] = quad;
+        whole += quad;
+      }
+      levels_[kGroups].sums[(p * 3 + c) * kWidth + g % kWidth] = whole;
+      parent += whole;
     }
+    levels_[kParents].sums[(p / kWidth * 3 + c) * kWidth + p % kWidth] = parent;
   }
 }
 

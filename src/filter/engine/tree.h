@@ -2,6 +2,7 @@
 // the kernel walks.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,8 +15,15 @@
 
 namespace psf::filter::engine {
 
-// Levels of bounds above the records: groups of 16, and groups of groups of 256.
-inline constexpr std::size_t kLevels = 2;
+// What bounds are kept for. Siblings are adjacent: node k of a level is in place k % 16 of family
+// k / 16, and the groups of parent p are family p.
+enum LevelName : std::size_t {
+  kQuads,    // 4 records, bounds of x alone
+  kGroups,   // 16 records, bounds of every column
+  kParents,  // 16 groups, bounds of x alone
+  kLevels
+};
+inline constexpr std::size_t kRecordsBelow[kLevels] = {4, kWidth, kWidth* kWidth};
 
 // Bounds and tests use the operations of the truth (ball.h, weights.h) in its order. Rounding is
 // monotone, so the same operations on the least and the greatest operand enclose, to the last bit,
@@ -37,28 +45,39 @@ class Tree {
   }
   // (3, 16) of group g.
   [[nodiscard]] const double* values(std::size_t g) const { return &values_[g * 3 * kWidth]; }
-  // Level 0: groups of records; level 1: groups of groups.
-  [[nodiscard]] std::size_t nodes(std::size_t level) const { return levels_[level].nodes; }
-  // (columns, 16) least values of a family's nodes, and behind them as many greatest.
-  [[nodiscard]] const float* bounds(std::size_t level, std::size_t family) const {
-    return &levels_[level].bounds[family * 2 * plan_.count * kWidth];
+  [[nodiscard]] std::size_t nodes(LevelName level) const { return levels_[level].nodes; }
+  // Records below a node.
+  [[nodiscard]] std::size_t size_of(LevelName level, std::size_t node) const {
+    return std::min(kRecordsBelow[level], size() - node * kRecordsBelow[level]);
   }
-  [[nodiscard]] search::Box box(std::size_t level, std::size_t node) const;
+  // (columns, 16) least values of a family's nodes, and behind them as many greatest.
+  [[nodiscard]] const float* bounds(LevelName level, std::size_t family) const {
+    return &levels_[level].bounds[family * 2 * columns(level) * kWidth];
+  }
+  // Of every column that is neither a distance to a hit nor an integer: abs(value) <= largest.
+  [[nodiscard]] bool all_within(float largest) const;
+  [[nodiscard]] std::size_t columns(LevelName level) const {
+    return level == kGroups ? plan_.count : 3;
+  }
+  [[nodiscard]] search::Box box(LevelName level, std::size_t node) const;
   // (3, 16) sums of a family's nodes.
-  [[nodiscard]] const double* sums(std::size_t level, std::size_t family) const {
+  [[nodiscard]] const double* sums(LevelName level, std::size_t family) const {
     return &levels_[level].sums[family * 3 * kWidth];
   }
 
  private:
-  void bound_family(std::size_t level, std::size_t family);
-  void sum_family(std::size_t level, std::size_t family);
-
-  // Families of kWidth siblings: node k in place k % 16 of family k / 16.
   struct Level {
-    core::Buffer<float> bounds;  // (families, 2, columns, 16)
-    core::Buffer<double> sums;   // (families, 3, 16), each added up in the order of its children
+    core::Buffer<float> bounds;  // (families, 2, columns, 16); repeated beyond the last node
+    core::Buffer<double> sums;   // (families, 3, 16), each added up in the order of what is below
     std::size_t nodes = 0;
   };
+
+  void bound_quads(std::size_t group);
+  void bound_group(std::size_t group);
+  void bound_parent(std::size_t parent);
+  // Repeats the last node's bounds in the places of its family behind it.
+  void fill_last_family(LevelName level);
+  void sum_parent(std::size_t parent);
 
   ColumnPlan plan_;
   std::vector<std::uint32_t> order_;

@@ -1,4 +1,4 @@
-// kLanes queries walk the tree: whole nodes by their bounds where these decide, records where not.
+// A packet of queries walks the tree: what its bounds decide as a whole, the rest pair by pair.
 #if defined(PSF_FILTER_ENGINE_WALK_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSF_FILTER_ENGINE_WALK_INL_H
 #undef PSF_FILTER_ENGINE_WALK_INL_H
@@ -15,224 +15,203 @@
 HWY_BEFORE_NAMESPACE();
 namespace psf::filter::engine::HWY_NAMESPACE {
 
-// chi and the terms as the queries of some lanes see them. Term k has the bit k of `open`, in the
-// order of kTermNames; chi has the bit after them.
-class Terms {
- public:
-  static constexpr unsigned kChi = 1u << kTermCount;
-
-  Terms(const ColumnPlan& plan, const WeightTerms& on, const Packet& packet, std::size_t lane)
-      : plan_(plan), packet_(packet), lane_(lane) {
-    bits_ = kChi;
-    const auto take = [this](std::size_t k, bool is_on) { bits_ |= unsigned{is_on} << k; };
-    take(0, on.normal.has_value());
-    take(1, on.reflectance.has_value());
-    take(2, on.visibility);
-    take(3, on.hit_distance.has_value());
-    take(4, on.plane.has_value());
-    take(5, on.direction.has_value());
-    take(6, on.material);
-    normal_ = on.normal.value_or(0);
-    reflectance_sq_ = on.reflectance.value_or(0) * on.reflectance.value_or(0);
-    hit_distance_ = on.hit_distance.value_or(0);
-    direction_ = on.direction.value_or(0);
-  }
-
-  [[nodiscard]] HWY_INLINE unsigned bits() const { return bits_; }
-  // Lanes with a query whose ball holds anything.
-  [[nodiscard]] HWY_INLINE M queries() const { return hn::Gt(r_sq(), hn::Zero(kD)); }
-
-  // For which queries the pair (i, i) passes.
-  [[nodiscard]] HWY_INLINE M self() const {
-    M pass = queries();
-    for (unsigned left = bits_; left != 0; left &= left - 1) {
-      with(left & (~left + 1), [&](const auto& term, std::size_t c) {
-        pass = hn::And(pass, term.pass(SourceALane{packet_.columns[c] + lane_}));
-      });
-    }
-    return pass;
-  }
-
-  // Calls visit(term, its first column) with the term's vectors; k: its bit.
-  template <class Visit>
-  HWY_INLINE void with(unsigned bit, const Visit& visit) const {
-    switch (bit) {
-      case kChi:
-        return visit(Chi{distance(0), r_sq()}, std::size_t{0});
-      case 1u << 0:
-        return visit(cosine(*plan_.normal, normal_), *plan_.normal);
-      case 1u << 1:
-        return visit(Reflectance{distance(*plan_.reflectance), hn::Set(kD, reflectance_sq_)},
-                     *plan_.reflectance);
-      case 1u << 2:
-        return visit(equal(*plan_.visibility), *plan_.visibility);
-      case 1u << 3:
-        return visit(HitDistance{column(*plan_.hit_distance), hn::Set(kD, hit_distance_)},
-                     *plan_.hit_distance);
-      case 1u << 4:
-        return visit(Plane{distance(0), column(*plan_.normal), column(*plan_.normal + 1),
-                           column(*plan_.normal + 2), hn::Load(kD, packet_.plane_reach + lane_)},
-                     std::size_t{0});
-      case 1u << 5:
-        return visit(cosine(*plan_.direction, direction_), *plan_.direction);
-      default:
-        return visit(equal(*plan_.material), *plan_.material);
-    }
-  }
-
- private:
-  [[nodiscard]] HWY_INLINE V r_sq() const { return hn::Load(kD, packet_.r_sq + lane_); }
-  [[nodiscard]] HWY_INLINE V column(std::size_t c) const {
-    return hn::Load(kD, packet_.columns[c] + lane_);
-  }
-  [[nodiscard]] HWY_INLINE Distance distance(std::size_t c) const {
-    return {column(c), column(c + 1), column(c + 2)};
-  }
-  [[nodiscard]] HWY_INLINE Cosine cosine(std::size_t c, float t) const {
-    return {column(c), column(c + 1), column(c + 2), hn::Set(kD, t)};
-  }
-  [[nodiscard]] HWY_INLINE Equal equal(std::size_t c) const {
-    return {hn::BitCast(kDI, column(c))};
-  }
-
-  const ColumnPlan& plan_;
-  const Packet& packet_;
-  std::size_t lane_;
-  unsigned bits_;
-  float normal_, reflectance_sq_, hit_distance_, direction_;
-};
-
-// The queries' box: which children of a node are within reach of any of them.
-class Reach {
- public:
-  Reach(const Packet& packet, std::size_t lane) {
-    for (std::size_t k = 0; k < kLanes; ++k) {
-      if (!(packet.r_sq[lane + k] > 0)) continue;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const float v = packet.columns[c][lane + k];
-        low_[c] = empty_ ? v : std::min(low_[c], v);
-        high_[c] = empty_ ? v : std::max(high_[c], v);
-      }
-      r_sq_ = empty_ ? packet.r_sq[lane + k] : std::max(r_sq_, packet.r_sq[lane + k]);
-      empty_ = false;
-    }
-  }
-  [[nodiscard]] bool is_empty() const { return empty_; }
-
-  // A bit a child of the family; not only those that have one.
-  [[nodiscard]] HWY_INLINE std::uint32_t children(const Bounds& family) const {
-    std::uint32_t bits = 0;
-    for (std::size_t place = 0; place < kWidth; place += kLanes) {
-      const V dx = gap(0, family, place), dy = gap(1, family, place), dz = gap(2, family, place);
-      const V gap_sq = sum_of_products(dx, dx, dy, dy, dz, dz);
-      bits |= bits_of(hn::Lt(gap_sq, hn::Set(kD, r_sq_))) << place;
-    }
-    return bits;
-  }
-
- private:
-  [[nodiscard]] HWY_INLINE V gap(std::size_t c, const Bounds& family, std::size_t place) const {
-    const V low = hn::Load(kD, family.low + c * kWidth + place);
-    const V high = hn::Load(kD, family.high + c * kWidth + place);
-    const V below = hn::Sub(low, hn::Set(kD, high_[c])),
-            above = hn::Sub(hn::Set(kD, low_[c]), high);
-    return hn::Max(hn::Max(below, above), hn::Zero(kD));
-  }
-
-  bool empty_ = true;
-  float low_[3], high_[3], r_sq_ = 0;
-};
-
-HWY_INLINE Bounds node_bounds(const Tree& tree, std::size_t level, std::size_t node) {
-  const float* low = tree.bounds(level, node / kWidth) + node % kWidth;
-  return {low, low + tree.plan().count * kWidth};
+HWY_INLINE std::uint32_t lowest_bit(std::uint32_t bits) {
+  return static_cast<std::uint32_t>(std::countr_zero(bits));
 }
+
+// A bit a node of a family: whether it may have sources in the ball of some query, and whether all
+// of its are in the balls of all.
+struct Balls {
+  std::uint32_t touched = 0, inside = 0;
+
+  HWY_INLINE Balls(const PacketBounds& queries, const float* bounds, std::size_t columns) {
+    for (std::size_t place = 0; place < kWidth; place += kLanes) {
+      const Verdict verdict = Chi::judge(queries, {bounds, columns, place});
+      touched |= bits_of(hn::Not(verdict.none)) << place;
+      inside |= bits_of(verdict.every) << place;
+    }
+  }
+};
+
+// What is to be done with the groups below a parent, a bit a group.
+struct Judged {
+  std::uint32_t touched = 0;            // some pair may pass; of the others none does
+  std::uint32_t inside = 0;             // of those: every pair passes chi
+  std::uint32_t closed = 0;             // of those: every pair passes every term
+  std::uint32_t open[kTermCount] = {};  // by term: not known whether every pair passes
+
+  // A bit a term.
+  [[nodiscard]] HWY_INLINE std::uint32_t open_at(std::uint32_t group) const {
+    std::uint32_t terms = 0;
+    for (std::size_t k = 0; k < kTermCount; ++k) terms |= (open[k] >> group & 1) << k;
+    return terms;
+  }
+};
+
+class Judge {
+ public:
+  Judge(const Tree& tree, const Terms& terms, const Packet& packet)
+      : tree_(tree), terms_(terms), queries_(packet) {}
+
+  [[nodiscard]] const PacketBounds& queries() const { return queries_; }
+  [[nodiscard]] HWY_INLINE bool is_reached() const { return queries_.greatest_r_sq > 0; }
+
+  // The groups of a parent that exist.
+  [[nodiscard]] HWY_INLINE std::uint32_t groups_of(std::size_t parent) const {
+    const std::size_t count = std::min(kWidth, tree_.nodes(kGroups) - parent * kWidth);
+    return (2u << (count - 1)) - 1;
+  }
+
+  // Those of them that are full: all, or all but the last of all.
+  [[nodiscard]] HWY_INLINE std::uint32_t full_groups_of(std::size_t parent) const {
+    const std::size_t count = std::min(kWidth, tree_.size() / kWidth - parent * kWidth);
+    return (1u << count) - 1;
+  }
+
+  [[nodiscard]] HWY_INLINE Judged groups(std::size_t parent) const {
+    const float* bounds = tree_.bounds(kGroups, parent);
+    const std::size_t columns = tree_.plan().count;
+    const Balls balls(queries_, bounds, columns);
+    Judged judged;
+    judged.touched = balls.touched & groups_of(parent);
+    if (judged.touched == 0) return judged;
+    std::uint32_t every = ~0u;
+    terms_.each(terms_.bits(), [&](std::size_t k, const auto& term, std::size_t) {
+      std::uint32_t none_pass = 0, all_pass = 0;
+      for (std::size_t place = 0; place < kWidth; place += kLanes) {
+        const Verdict verdict = term.judge(queries_, {bounds, columns, place});
+        none_pass |= bits_of(verdict.none) << place;
+        all_pass |= bits_of(verdict.every) << place;
+      }
+      judged.touched &= ~none_pass;
+      judged.open[k] = ~all_pass;
+      every &= all_pass;
+    });
+    judged.inside = balls.inside & judged.touched;
+    judged.closed = every & judged.touched;
+    return judged;
+  }
+
+ private:
+  const Tree& tree_;
+  const Terms& terms_;
+  PacketBounds queries_;
+};
 
 class AverageWalk {
  public:
-  AverageWalk(const Tree& tree, const WeightTerms& on, Packet& packet, std::size_t lane)
+  AverageWalk(const Tree& tree, const WeightTerms& on, Packet& packet)
       : tree_(tree),
-        terms_(tree.plan(), on, packet, lane),
-        reach_(packet, lane),
-        sums_(packet, lane) {}
+        on_(on),
+        packet_(packet),
+        terms_(tree.plan(), on, packet, 0),
+        judge_(tree, terms_, packet) {}
 
-  HWY_INLINE void run(std::span<const std::uint32_t> nodes) {
-    sums_.set_met_itself(terms_.self());
-    if (reach_.is_empty()) return;
-    for (const std::uint32_t node : nodes) parent(node);
+  HWY_INLINE void run(std::span<const std::uint32_t> parents) {
+    for (std::size_t lane = 0; lane < kWidth; lane += kLanes) {
+      Sums(packet_, lane).set_met_itself(Terms(tree_.plan(), on_, packet_, lane).self());
+    }
+    if (!judge_.is_reached()) return;
+    for (const std::uint32_t parent : parents) visit(parent);
+    whole_.add_to(packet_);
   }
 
  private:
-  struct Open {
-    M lanes;         // queries for which the node is not decided
-    unsigned terms;  // what is not known to pass for all of these
-  };
+  static constexpr std::size_t kQuad = kRecordsBelow[kQuads];
+  static constexpr std::size_t kQuadsInGroup = kWidth / kQuad;
 
-  HWY_INLINE void parent(std::uint32_t node) {
-    std::uint32_t children = reach_.children(node_bounds(tree_, 0, std::size_t{node} * kWidth));
-    if (children == 0) return;
-    Open open{terms_.queries(), terms_.bits()};
-    if (!descend(1, node, open)) return;
-    for (; children != 0; children &= children - 1) {
-      const std::size_t child = node * kWidth + static_cast<unsigned>(std::countr_zero(children));
-      Open below = open;
-      if (child < tree_.nodes(0) && descend(0, child, below)) records(child, below);
+  HWY_INLINE void visit(std::size_t parent) {
+    const Judged judged = judge_.groups(parent);
+    if (judged.touched == 0) return;
+    const std::uint32_t whole = judged.inside & judged.closed;
+    if (whole != 0) {
+      std::size_t sources = static_cast<std::size_t>(std::popcount(whole)) * kWidth;
+      if ((whole & ~judge_.full_groups_of(parent)) != 0) sources -= kWidth - tree_.size() % kWidth;
+      whole_.add(tree_.sums(kGroups, parent), whole, sources);
+    }
+    const std::uint32_t by_quads = judged.closed & ~whole & judge_.full_groups_of(parent);
+    if (by_quads != 0) {
+      choose_quads(parent, by_quads);
+      for (std::size_t lane = 0; lane < kWidth; lane += kLanes) add_quads(lane);
+    }
+    for (std::uint32_t left = judged.touched & ~whole & ~by_quads; left != 0; left &= left - 1) {
+      const std::uint32_t place = lowest_bit(left);
+      for (std::size_t lane = 0; lane < kWidth; lane += kLanes) {
+        add_group(parent * kWidth + place, judged.open_at(place), lane);
+      }
     }
   }
 
-  // Takes out the lanes that the bounds decide, adding the node's sum for those where all below
-  // pass; false where no lane is left.
-  HWY_INLINE bool descend(std::size_t level, std::size_t node, Open& open) {
-    const Bounds bounds = node_bounds(tree_, level, node);
-    M every = open.lanes;
-    for (unsigned left = open.terms; left != 0;) {
-      const unsigned bit = std::bit_floor(left);  // chi first: it decides most
-      left ^= bit;
-      Verdict verdict;
-      terms_.with(bit,
-                  [&](const auto& term, std::size_t c) { verdict = term.judge(bounds.column(c)); });
-      open.lanes = hn::AndNot(verdict.none, open.lanes);
-      if (hn::AllFalse(kD, open.lanes)) return false;
-      if (hn::AllFalse(kD, hn::AndNot(verdict.every, open.lanes))) open.terms ^= bit;
-      every = hn::And(every, verdict.every);
+  // Of the given groups, where chi alone is to be asked: adds the quads inside all balls and lists
+  // those that are neither inside nor outside.
+  HWY_INLINE void choose_quads(std::size_t parent, std::uint32_t groups) {
+    quad_count_ = 0;
+    for (std::size_t quarter = 0; quarter < kQuadsInGroup; ++quarter, groups >>= kQuadsInGroup) {
+      const std::uint32_t wanted = quads_of(groups & 0xFu);
+      if (wanted == 0) continue;
+      const std::size_t family = parent * kQuadsInGroup + quarter;
+      const Balls balls(judge_.queries(), tree_.bounds(kQuads, family), 3);
+      const std::uint32_t inside = balls.inside & wanted;
+      if (inside != 0) {
+        whole_.add(tree_.sums(kQuads, family), inside,
+                   static_cast<std::size_t>(std::popcount(inside)) * kQuad);
+      }
+      quad_count_ += list(balls.touched & ~balls.inside & wanted,
+                          static_cast<std::int32_t>(family * kWidth), quads_ + quad_count_);
     }
-    every = hn::And(every, open.lanes);
-    if (hn::AllFalse(kD, every)) return true;
-    const std::size_t below = level == 0 ? kWidth : kWidth * kWidth;
-    sums_.add(every, tree_.sums(level, node / kWidth) + node % kWidth,
-              std::min(below, tree_.size() - node * below));
-    open.lanes = hn::AndNot(every, open.lanes);
-    return !hn::AllFalse(kD, open.lanes);
   }
 
-  HWY_INLINE void records(std::size_t group, const Open& open) {
-    const std::size_t count = std::min(kWidth, tree_.size() - group * kWidth);
-    const float* columns = tree_.group(group);
-    // Each term in a loop of its own over the sources, the last one together with the sums.
-    M pass[kWidth];
-    for (M& mask : pass) mask = open.lanes;
-    unsigned left = open.terms;
-    for (; !std::has_single_bit(left); left &= left - 1) {
-      terms_.with(left & (~left + 1), [&](const auto& term, std::size_t c) {
-        const float* first = columns + c * kWidth;
-        for (std::size_t k = 0; k < kWidth; ++k) {
-          pass[k] = hn::And(pass[k], term.pass(OneSource{first + k}));
+  // Four bits a group of four.
+  static HWY_INLINE std::uint32_t quads_of(std::uint32_t groups) {
+    const std::uint32_t spread =
+        (groups & 1) | (groups & 2) << 3 | (groups & 4) << 6 | (groups & 8) << 9;
+    return spread * 0xFu;
+  }
+
+  HWY_INLINE void add_quads(std::size_t lane) {
+    const Chi chi = Terms(tree_.plan(), on_, packet_, lane).chi();
+    Sums(packet_, lane).add([&](auto&& add) {
+      for (std::size_t q = 0; q < quad_count_; ++q) {
+        const std::size_t group = static_cast<std::size_t>(quads_[q]) / kQuadsInGroup;
+        const std::size_t first = static_cast<std::size_t>(quads_[q]) % kQuadsInGroup * kQuad;
+        const float* columns = tree_.group(group) + first;
+        const double* values = tree_.values(group) + first;
+        for (std::size_t k = 0; k < kQuad; ++k) {
+          add(chi.pass(OneSource{columns + k}), values + k);
         }
-      });
-    }
-    terms_.with(left, [&](const auto& term, std::size_t c) {
+      }
+    });
+  }
+
+  // The records of a group: each term in a loop of its own over them.
+  HWY_INLINE void add_group(std::size_t group, std::uint32_t open, std::size_t lane) {
+    const Terms terms(tree_.plan(), on_, packet_, lane);
+    const float* columns = tree_.group(group);
+    const double* values = tree_.values(group);
+    const std::size_t count = tree_.size_of(kGroups, group);
+    const Chi chi = terms.chi();
+    M pass[kWidth];
+    for (std::size_t k = 0; k < kWidth; ++k) pass[k] = chi.pass(OneSource{columns + k});
+    terms.each(open, [&](std::size_t, const auto& term, std::size_t c) {
       const float* first = columns + c * kWidth;
-      const auto mask = [&](std::size_t k) {
-        return hn::And(pass[k], term.pass(OneSource{first + k}));
-      };
-      sums_.add(mask, tree_.values(group), count);
+      for (std::size_t k = 0; k < kWidth; ++k) {
+        pass[k] = hn::And(pass[k], term.pass(OneSource{first + k}));
+      }
+    });
+    Sums(packet_, lane).add([&](auto&& add) {
+      for (std::size_t k = 0; k < count; ++k) add(pass[k], values + k);
     });
   }
 
   const Tree& tree_;
+  const WeightTerms& on_;
+  Packet& packet_;
   Terms terms_;
-  Reach reach_;
-  Sums sums_;
+  Judge judge_;
+  WholeSums whole_;
+  // Of the parent at hand. A vector is stored for every 16 quads, whatever their number.
+  std::int32_t quads_[(kQuadsInGroup + 1) * kWidth];
+  std::size_t quad_count_ = 0;
 };
 
 }  // namespace psf::filter::engine::HWY_NAMESPACE
