@@ -7,27 +7,28 @@
 
 namespace psf::filter {
 
-// Bytes a record at most, beside the records themselves; the radius is counted here.
+// Bytes a record at most, beside the records themselves; the radius is counted here. What the sort
+// needs (44) is given back before the tree is built, which needs more.
 [[nodiscard]] inline std::uint64_t memory_per_record(const Parameters& parameters) {
-  constexpr std::uint64_t kVector = 12, kWord = 4;
-  constexpr std::uint64_t kResult = kVector + kWord + 1;  // c_bar, neighbours, role
-  constexpr std::uint64_t kLists = 2 * kWord;             // queries and sources
+  constexpr std::uint64_t kVector = 12, kWord = 4, kSum = 24;  // three floats; three doubles
+  constexpr std::uint64_t kGroup = 16, kQuad = 4;              // records, of engine/tree.h
+  constexpr std::uint64_t kResult = kVector + kWord + 1;       // c_bar, neighbours, role
+  constexpr std::uint64_t kLists = 4 * kWord;  // queries and sources, ascending and in order
   constexpr std::uint64_t kRadius = kWord;
-  constexpr std::uint64_t kSums = 24;     // the values averaged, three doubles
-  constexpr std::uint64_t kGroups = 8;    // bounds and sums of groups of records
-  constexpr std::uint64_t kSorting = 16;  // keys and numbers while the curve's order is made
+  constexpr std::uint64_t kQuads = (2 * kVector + kSum) / kQuad;
 
   const WeightTerms& terms = parameters.weights;
   const bool disk = parameters.estimator == Estimator::disk;
-  std::uint64_t sorted = kVector;  // positions, and what the terms compare, along the curve
-  if (terms.normal || terms.plane || disk) sorted += kVector;
-  if (terms.reflectance) sorted += kVector;
-  if (terms.visibility) sorted += kWord;
-  if (terms.hit_distance) sorted += kWord;
-  if (terms.direction) sorted += kVector;
-  if (terms.material) sorted += kWord;
+  std::uint64_t columns = kVector;  // positions, and what the terms compare
+  if (terms.normal || terms.plane) columns += kVector;
+  if (terms.reflectance) columns += kVector;
+  if (terms.visibility) columns += kWord;
+  if (terms.hit_distance) columns += kWord;
+  if (terms.direction) columns += kVector;
+  if (terms.material) columns += kWord;
+  const std::uint64_t groups = (2 * columns + kSum + kGroup - 1) / kGroup;
 
-  std::uint64_t bytes = kResult + kLists + kRadius + sorted + kSums + kGroups + kSorting;
+  std::uint64_t bytes = kResult + kLists + kRadius + columns + kSum + kQuads + groups;
   if (parameters.demodulate || parameters.iterations > 1) bytes += kVector;  // what is averaged
   if (disk) bytes += kWord;                                                  // areas
   return bytes;

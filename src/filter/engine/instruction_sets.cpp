@@ -4,20 +4,35 @@
 #include <cstdint>
 
 #include "core/error.h"
-// Must come before Highway's.
 #include "filter/engine/targets.h"
 
+// As in kernel.cpp: a function for each set, one of which is chosen at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "filter/engine/instruction_sets.cpp"
+#include <hwy/foreach_target.h>
+// Must come after foreach_target.h.
 #include <hwy/highway.h>
-#include <hwy/targets.h>
 
+HWY_BEFORE_NAMESPACE();
+namespace psf::filter::engine::HWY_NAMESPACE {
+
+std::int64_t own_target() { return HWY_TARGET; }
+
+}  // namespace psf::filter::engine::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace psf::filter::engine {
+
+HWY_EXPORT(own_target);
+
 namespace {
 
 using Targets = std::int64_t;  // a bit a set, the best one lowest
 
-// Asked once, before any limit. Where there is one set alone Highway does not ask the machine.
+// Asked once, before any limit.
 Targets available() {
-  static const Targets targets = HWY_SUPPORTED_TARGETS & HWY_TARGETS;
+  static const Targets targets = hwy::SupportedTargets() & HWY_TARGETS;
   return targets != 0 ? targets : HWY_STATIC_TARGET;
 }
 
@@ -42,6 +57,8 @@ std::vector<std::string> instruction_sets() {
   return names;
 }
 
+std::string instruction_set() { return name_of(HWY_DYNAMIC_DISPATCH(own_target)()); }
+
 InstructionSetLimit::InstructionSetLimit(const std::string& name) {
   for (Targets left = available(); left != 0; left &= left - 1) {
     if (name_of(left & -left) != name) continue;
@@ -55,3 +72,4 @@ InstructionSetLimit::InstructionSetLimit(const std::string& name) {
 InstructionSetLimit::~InstructionSetLimit() { use(0); }
 
 }  // namespace psf::filter::engine
+#endif

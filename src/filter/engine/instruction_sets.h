@@ -12,6 +12,9 @@ namespace psf::filter::engine {
 // uses.
 [[nodiscard]] std::vector<std::string> instruction_sets();
 
+// The one in use now.
+[[nodiscard]] std::string instruction_set();
+
 // While it lives the kernel uses this set. It holds for the whole process, for whatever else calls
 // Highway too (the sort of search/compact_order.h), and for threads that are in the kernel from
 // their next call on: have one at a time, and no filter at work when it comes and goes.

@@ -1,0 +1,97 @@
+// Orphans of the fast engine adopt what those of the plain one do.
+#include "catch.h"
+#include "engine_case.h"
+#include "search/points.h"
+
+namespace psf {
+namespace {
+
+using search::Kind;
+using tests::EngineCase;
+
+// Contributions tell which sources were adopted. Returns how many orphans there were.
+std::uint64_t check(const EngineCase& c) {
+  const filter::Average fast = c.filtered(Kind::flann);
+  CHECK(tests::difference(fast, c.filtered(Kind::plain)) == "");
+  CHECK(tests::difference(fast, c.filtered(Kind::brute)) == "");
+  return fast.statistics.orphans;
+}
+
+TEST_CASE("Orphans agree among random sources, few of which pass") {
+  for (const std::size_t count : {2u, 17u, 250u, 3000u}) {
+    for (const unsigned terms : {0u, 7u, 64u, 127u}) {
+      for (const float r : {0.0f, 1e-25f, 0.01f, 0.1f}) {
+        EngineCase c(count, static_cast<std::uint32_t>(count) + terms, 0.5);
+        c.radius.assign(count, r);
+        c.parameters.weights = tests::terms_of(terms);
+        INFO(count << " records, terms " << terms << ", radius " << r);
+        check(c);
+      }
+    }
+  }
+}
+
+TEST_CASE("Orphans agree on ties, where the lower record goes first") {
+  for (const std::size_t count : {40u, 700u}) {
+    EngineCase c(count, 3, 0.5);
+    c.set.position = tests::lattice_points(count, 4);
+    c.radius.assign(count, 0);
+    c.parameters.weights = tests::terms_of(4);
+    CHECK(check(c) > count / 4);
+    c.set.position.assign(count, Vec3(0.1f, 0.2f, 0.3f));
+    CHECK(check(c) > count / 4);
+  }
+}
+
+TEST_CASE("Orphans agree where one source passes, the last or the farthest, or none") {
+  for (const std::size_t count : {18u, 300u, 2000u}) {
+    for (const std::size_t chosen : {std::size_t{1}, count / 2, count - 1, count}) {
+      EngineCase c(count, 5);
+      c.set.flags.assign(count, filter::kHasVertex | filter::kShaded);
+      c.set.material.assign(count, 1);
+      for (std::size_t i = 0; i < count; i += 9) {
+        c.set.flags[i] = filter::kHasVertex;
+        c.set.material[i] = 2;
+      }
+      if (chosen < count) {
+        c.set.flags[chosen] = filter::kHasVertex | filter::kShaded;
+        c.set.material[chosen] = 2;
+        c.set.position[chosen] = Vec3(1e5f, 0, 0);
+      }
+      c.parameters.weights = tests::terms_of(64);
+      c.radius.assign(count, 0.01f);
+      INFO(count << " records, " << chosen << " passes");
+      CHECK(check(c) > 0);
+      const filter::Statistics counts = c.filtered(Kind::flann).statistics;
+      CHECK(counts.orphans_unmatched == (chosen < count ? 0 : counts.orphans));
+    }
+  }
+}
+
+TEST_CASE("Orphans agree at any scale") {
+  for (const tests::PointSet& points : tests::point_sets(300)) {
+    for (const float r : {0.0f, points.radii.front()}) {
+      EngineCase c(300, 6, 0.6);
+      c.set.position = points.points;
+      c.radius.assign(300, r);
+      c.parameters.weights = tests::terms_of(5);
+      INFO(points.name << ", radius " << r);
+      check(c);
+    }
+  }
+}
+
+TEST_CASE("Orphans of infinite reach agree") {
+  EngineCase c(200, 7, 0.5);
+  c.radius.assign(200, std::numeric_limits<float>::infinity());
+  c.set.visibility.assign(200, 1);
+  for (std::size_t i = 0; i < 200; i += 2) {
+    c.set.flags[i] = filter::kHasVertex;
+    c.set.visibility[i] = 2;
+  }
+  c.parameters.weights = tests::terms_of(4);
+  CHECK(check(c) == 100);
+}
+
+}  // namespace
+}  // namespace psf

@@ -1,0 +1,90 @@
+// Every instruction set and any number of threads give the same bytes.
+#include "filter/engine/instruction_sets.h"
+
+#include "catch.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "engine_case.h"
+
+namespace psf {
+namespace {
+
+using filter::engine::instruction_sets;
+using filter::engine::InstructionSetLimit;
+using tests::EngineCase;
+
+// Contributions as they are in pictures, so that sums in another order would round differently.
+EngineCase noisy_case(std::size_t count, unsigned terms, float r) {
+  EngineCase c(count, terms + 1, terms % 2 == 0 ? 0.3 : 0);
+  c.set.contribution = tests::random_records(count, 3, 0, c.cameras).contribution;
+  c.parameters.weights = tests::terms_of(terms);
+  c.radius.assign(count, r);
+  return c;
+}
+
+std::vector<EngineCase> cases() {
+  std::vector<EngineCase> all;
+  for (const std::size_t count : {1u, 2u, 15u, 17u, 63u, 65u, 255u, 257u, 4097u}) {
+    for (const unsigned terms : {0u, 7u, 127u}) {
+      for (const float r : {0.08f, 0.5f}) all.push_back(noisy_case(count, terms, r));
+    }
+  }
+  for (unsigned bits = 0; bits < 128; ++bits) all.push_back(noisy_case(600, bits, 0.4f));
+  EngineCase repeated = noisy_case(3000, 7, 0.2f);
+  repeated.parameters.iterations = 3;
+  repeated.parameters.demodulate = true;
+  repeated.parameters.sources = 3;
+  all.push_back(repeated);
+  EngineCase disk = noisy_case(3000, 1, 0.2f);
+  disk.parameters.estimator = filter::Estimator::disk;
+  all.push_back(disk);
+  return all;
+}
+
+TEST_CASE("Every instruction set gives the same bytes") {
+  const std::vector<std::string> sets = instruction_sets();
+  REQUIRE_FALSE(sets.empty());
+  for (const EngineCase& c : cases()) {
+    const filter::Average best = c.filtered(search::Kind::flann);
+    for (const std::string& set : sets) {
+      const InstructionSetLimit limit(set);
+      INFO(set << ", " << c.set.size() << " records");
+      CHECK(tests::difference(best, c.filtered(search::Kind::flann)) == "");
+    }
+  }
+}
+
+TEST_CASE("Any number of threads gives the same bytes") {
+  for (const unsigned terms : {0u, 7u, 127u}) {
+    const EngineCase c = noisy_case(20'000, terms, 0.1f);
+    const auto with_threads = [&](std::size_t threads) {
+      const core::ThreadLimit limit(threads);
+      return c.filtered(search::Kind::flann);
+    };
+    const filter::Average one = with_threads(1);
+    for (const std::size_t threads : {2u, 3u, 7u}) {
+      INFO("terms " << terms << ", threads " << threads);
+      CHECK(tests::difference(one, with_threads(threads)) == "");
+    }
+  }
+}
+
+TEST_CASE("The kernel uses the instruction set that it is held to, else the best") {
+  for (const std::string& set : instruction_sets()) {
+    {
+      const InstructionSetLimit limit(set);
+      CHECK(filter::engine::instruction_set() == set);
+    }
+    CHECK(filter::engine::instruction_set() == instruction_sets().front());
+  }
+}
+
+TEST_CASE("There is no instruction set but those that are listed") {
+  CHECK_THROWS_AS(InstructionSetLimit("abacus"), Error);
+  const std::vector<std::string> sets = instruction_sets();
+  const InstructionSetLimit limit(sets.back());
+  CHECK(instruction_sets() == sets);
+}
+
+}  // namespace
+}  // namespace psf
