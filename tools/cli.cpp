@@ -1,6 +1,7 @@
 #include "cli.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <cstdio>
 #include <exception>
@@ -53,6 +54,14 @@ void add_common(CLI::App& command, CommonOptions& options, bool with_json) {
 
 void set_example(CLI::App& command, const std::string& example) {
   command.footer("\nExample:\n  " + example);
+}
+
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  constexpr int kLargestKept = 32 << 20, kMostKept = 256 << 20;  // bytes; larger arrays go back
+  mallopt(M_MMAP_THRESHOLD, kLargestKept);
+  mallopt(M_TRIM_THRESHOLD, kMostKept);
+#endif
 }
 
 int run_tool(CLI::App& app, int argc, char** argv) {

@@ -21,6 +21,10 @@ void add_common(CLI::App& command, CommonOptions& options, bool with_json = true
 // and throw.
 int run_tool(CLI::App& app, int argc, char** argv);
 
+// What a block of a filter gives back the next one takes: without going through the system, which
+// would clear it anew (a tenth of the time for blocks of 65,536 records). For the whole process.
+void keep_freed_memory();
+
 // The example that closes every --help, set in its own paragraph.
 void set_example(CLI::App& command, const std::string& example);
 

@@ -35,6 +35,7 @@ class BoxIndex {
 
   std::vector<Box> boxes_;
   std::vector<SizeClass> classes_;
+  float largest_coordinate_ = 0;  // in absolute value
 };
 
 }  // namespace psf::search

@@ -200,9 +200,13 @@ void check(std::uint32_t scenes, std::uint32_t seed) {
   }
 }
 
-TEST_CASE("Bounds never contradict a pair") { check(1500, 1); }
+TEST_CASE("Bounds never contradict a pair") {
+  check(1500, 1);
+}
 
-TEST_CASE("Bounds never contradict a pair, many packets", "[.][long]") { check(20'000, 2); }
+TEST_CASE("Bounds never contradict a pair, many packets", "[.][long]") {
+  check(20'000, 2);
+}
 
 }  // namespace
 }  // namespace psf

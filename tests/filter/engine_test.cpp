@@ -25,9 +25,9 @@ std::uint64_t check(const EngineCase& c, float tolerance = 0) {
 }
 
 TEST_CASE("The engines agree whatever the number of records") {
-  for (const std::size_t count : {1u,   2u,   3u,   4u,   5u,   15u,  16u,   17u,   31u,  32u,
-                                  33u,  63u,  64u,  65u,  100u, 255u, 256u,  257u,  300u, 511u,
-                                  512u, 513u, 770u, 1023u}) {
+  for (const std::size_t count :
+       {1u,  2u,  3u,   4u,   5u,   15u,  16u,  17u,  31u,  32u,  33u,  63u,
+        64u, 65u, 100u, 255u, 256u, 257u, 300u, 511u, 512u, 513u, 770u, 1023u}) {
     for (const unsigned terms : {0u, kDefaultTerms}) {
       for (const double unshaded : {0.0, 0.4}) {
         EngineCase c(count, static_cast<std::uint32_t>(count), unshaded);
@@ -111,7 +111,8 @@ TEST_CASE("The engines agree on any radius, on one for each record too") {
   }
 }
 
-// Where the radius is infinite and the term's share 0, what they allow is no number: nothing passes.
+// Where the radius is infinite and the term's share 0, what they allow is no number: nothing
+// passes.
 TEST_CASE("The engines agree in planes, where the distance from them is nothing at all") {
   for (const float plane : {0.0f, 1e-7f}) {
     EngineCase c(600, 10);
@@ -160,6 +161,24 @@ TEST_CASE("The engines agree on points that are equal, in line, far away or beyo
         c.parameters.weights = tests::terms_of(kDefaultTerms + 16);
         check(c);
       }
+    }
+  }
+}
+
+// On a diagonal, the distance of two nodes' middles is all that their boxes and the radius reach;
+// far from the origin, middles are rounded by more than the points are apart.
+TEST_CASE("The engines agree on a diagonal far from the origin") {
+  constexpr std::size_t kCount = 20'000;  // nodes enough for a search over them
+  for (const float far : {0.0f, 1e5f, -1e6f}) {
+    EngineCase c(kCount, 12);
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const float t = far + static_cast<float>(i * 7919 % kCount) / 16;
+      c.set.position[i] = Vec3(t, t, t);
+    }
+    for (const float r : {0.11f, 0.12f, 0.4f}) {
+      c.radius.assign(kCount, r);
+      INFO("at " << far << ", radius " << r);
+      CHECK(tests::difference(c.filtered(Kind::flann), c.filtered(Kind::plain)) == "");
     }
   }
 }

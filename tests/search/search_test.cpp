@@ -6,7 +6,6 @@
 #include "core/parallel.h"
 #include "points.h"
 #include "search/brute_force.h"
-#include "search/compact_order.h"
 #include "search/index.h"
 
 namespace psf {
@@ -130,25 +129,6 @@ TEST_CASE("One index answers many threads at once as it answers one") {
     return all;
   };
   CHECK(ask(1) == ask(4));
-}
-
-TEST_CASE("Compact order is a permutation that keeps near points together") {
-  const Points points = tests::uniform_points(4096, 1, 10);
-  std::vector<std::uint32_t> chosen;
-  for (std::uint32_t k = 1; k < points.size(); k += 2) chosen.push_back(k);
-  std::vector<std::uint32_t> order = search::compact_order(points, chosen);
-  double step = 0;
-  for (std::size_t k = 1; k < order.size(); ++k) {
-    step += double{(points[order[k]] - points[order[k - 1]]).length()};
-  }
-  // 2048 points in a unit cube: neighbours in the order are a tenth apart, random ones 0.66.
-  CHECK(step / static_cast<double>(order.size()) < 0.15);
-  std::sort(order.begin(), order.end());
-  CHECK(order == chosen);
-  CHECK(search::compact_order(points, {}).empty());
-  const Points extreme = {{3e38f, 0, 0}, {-3e38f, 0, 0}, {0, 0, 0}};
-  CHECK(search::compact_order(extreme, std::vector<std::uint32_t>{0, 1, 2}) ==
-        std::vector<std::uint32_t>{0, 1, 2});
 }
 
 }  // namespace

@@ -50,6 +50,15 @@ TEST_CASE("psf-bench filter measures a made-up box") {
   CHECK(rows.at("neighbors_differ").at("median") == 0);
   CHECK(rows.at("c_bar_differs").at("met") == true);
   CHECK(rows.at("passes_2x").at("median") > 1);
+  CHECK(rows.at("floor_chi").at("median") > rows.at("floor_terms").at("median"));
+  CHECK(rows.at("floor_share").at("median") > 0);
+  // What the machine has beside its best set is on the floor and in the whole filter.
+  std::size_t on_floor = 0, whole = 0;
+  for (const auto& [name, row] : rows) {
+    if (name.starts_with("floor_terms_")) ++on_floor;
+    if (name.starts_with("set_")) ++whole;
+  }
+  CHECK(on_floor == whole);
 
   const Json points = points_of(report, "speed");
   REQUIRE(points.size() == 4);  // two engines for each number of neighbours

@@ -9,6 +9,7 @@
 
 #include "bench/benches.h"
 #include "bench/filter_rows.h"
+#include "bench/floor_rows.h"
 #include "bench/growth.h"
 #include "cli.h"
 #include "core/error.h"
@@ -52,6 +53,7 @@ class Bench {
     }
     add(agreement_rows(agreement_));
     measure_threads();
+    measure_floor();
     if (sample_.passes.size() > 2) add({passes_row(sample_, reach_, options_.repeat)});
     step();
     if (options_.growth) measure_growth();
@@ -128,7 +130,7 @@ class Bench {
 
   [[nodiscard]] std::size_t steps() const {
     const std::size_t growth = std::size(kGrowthNeighbors) + growth_sizes().size();
-    return options_.neighbors.size() + 2 + (options_.growth ? growth : 0);
+    return options_.neighbors.size() + 3 + (options_.growth ? growth : 0);
   }
 
   void step() {
@@ -167,6 +169,13 @@ class Bench {
     step();
   }
 
+  void measure_floor() {
+    add(floor_rows(sample_, options_.repeat));
+    add({floor_share_row(sample_, reach_, options_.repeat)});
+    add(instruction_set_rows(sample_, reach_, options_.repeat));
+    step();
+  }
+
   void add_growth(const Sample& sample, const char* series, std::size_t neighbors) {
     const bool more = !growth_.empty() && growth_.back().series == series;
     const double start = more ? growth_.back().reach.r0 : 0;
@@ -194,7 +203,7 @@ class Bench {
   core::Progress progress_;
   Sample sample_;
   std::size_t done_ = 0;
-  Reach reach_;  // for threads and passes
+  Reach reach_;  // for threads, the floor, instruction sets and passes
   Agreement agreement_;
   std::vector<Row> rows_;
   std::vector<Point> points_, growth_;
@@ -202,6 +211,7 @@ class Bench {
 };
 
 void run(const FilterOptions& options) {
+  tools::keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
   if (!options.common.json.empty()) core::OutputFile probe(options.common.json);
   Bench bench(options);

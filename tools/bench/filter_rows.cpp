@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "bench/turns.h"
 #include "core/parallel.h"
 
 namespace psf::bench {
@@ -20,31 +21,6 @@ std::optional<Target> speed_target(std::size_t neighbors) {
   }
   return std::nullopt;
 }
-
-// Seconds that `first` and `second` return, run in turn: both see the same machine.
-struct Turns {
-  std::vector<double> first, second;
-
-  template <class First, class Second>
-  Turns(std::size_t repeat, const First& run_first, const Second& run_second) {
-    double total = 0;
-    while (first.size() < repeat && total < kEnoughSeconds) {
-      first.push_back(run_first());
-      second.push_back(run_second());
-      total += first.back() + second.back();
-    }
-  }
-
-  [[nodiscard]] Spread ratio() const {
-    std::vector<double> ratios;
-    for (std::size_t k = 0; k < first.size(); ++k) ratios.push_back(first[k] / second[k]);
-    return spread(ratios);
-  }
-  [[nodiscard]] std::string detail() const {
-    return fmt::format("{:.3g} / {:.3g} s, {} pair{} of runs", spread(first).median,
-                       spread(second).median, first.size(), first.size() == 1 ? "" : "s");
-  }
-};
 
 double relative_difference(float a, float b) {
   if (a == b) return 0;

@@ -47,7 +47,4 @@ struct Point {
 [[nodiscard]] double ns_per_record(const Point& point);
 [[nodiscard]] double ns_per_neighbor(const Point& point);
 
-// A row is not measured again when its runs took so long, whatever --repeat says.
-inline constexpr double kEnoughSeconds = 120;
-
 }  // namespace psf::bench

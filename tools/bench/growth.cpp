@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "bench/turns.h"
 #include "core/parallel.h"
 
 namespace psf::bench {

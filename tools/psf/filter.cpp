@@ -1,6 +1,5 @@
 // psf filter: averages the contributions of a dump over nearby vertices and writes pictures.
 #include <fmt/format.h>
-#include <malloc.h>
 
 #include <chrono>
 #include <filesystem>
@@ -9,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "cli.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
@@ -32,16 +32,6 @@ double seconds_since(Clock::time_point start) {
 constexpr std::size_t kProgressSteps = 1000;
 constexpr std::chrono::milliseconds kBetweenLooks{200};
 constexpr double kPatience = 5;  // seconds without a writer before it is said
-
-// What a block gives back the next one takes: without going through the system, which would clear
-// it anew (a tenth of the time for blocks of 65,536 records). Arrays above kLargestKept go back.
-void keep_freed_memory() {
-#ifdef __GLIBC__
-  constexpr int kLargestKept = 32 << 20, kMostKept = 256 << 20;  // bytes
-  mallopt(M_MMAP_THRESHOLD, kLargestKept);
-  mallopt(M_TRIM_THRESHOLD, kMostKept);
-#endif
-}
 
 std::vector<std::pair<std::string, std::string>> attributes_of(
     const study::Dump& dump, const filter::Parameters& parameters) {

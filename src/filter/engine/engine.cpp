@@ -137,7 +137,8 @@ class TreeEngine final : public Engine {
     for (std::size_t k = 0; k < kWidth; ++k) {
       const float r_i = p_.radius[queries[std::min(k, queries.size() - 1)]];
       packet.r_sq[k] = k < queries.size() ? r_i * r_i : 0;
-      packet.plane_reach[k] = plane * r_i;
+      const float reach = plane * r_i;
+      packet.plane_reach[k] = std::isnan(reach) ? -1 : reach;  // 0 times infinity: nothing passes
       packet.count[k] = 0;
       for (auto& sum : packet.sum) sum[k] = 0;
     }

@@ -1,6 +1,5 @@
 #include "filter/engine/instruction_sets.h"
 
-#include <algorithm>
 #include <cstdint>
 
 #include "core/error.h"
@@ -16,7 +15,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace psf::filter::engine::HWY_NAMESPACE {
 
-std::int64_t own_target() { return HWY_TARGET; }
+std::int64_t own_target() {
+  return HWY_TARGET;
+}
 
 }  // namespace psf::filter::engine::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -57,7 +58,9 @@ std::vector<std::string> instruction_sets() {
   return names;
 }
 
-std::string instruction_set() { return name_of(HWY_DYNAMIC_DISPATCH(own_target)()); }
+std::string instruction_set() {
+  return name_of(HWY_DYNAMIC_DISPATCH(own_target)());
+}
 
 InstructionSetLimit::InstructionSetLimit(const std::string& name) {
   for (Targets left = available(); left != 0; left &= left - 1) {
@@ -69,7 +72,9 @@ InstructionSetLimit::InstructionSetLimit(const std::string& name) {
   throw Error(ErrorCode::usage, "there is no instruction set " + name + " here");
 }
 
-InstructionSetLimit::~InstructionSetLimit() { use(0); }
+InstructionSetLimit::~InstructionSetLimit() {
+  use(0);
+}
 
 }  // namespace psf::filter::engine
 #endif

@@ -1,10 +1,7 @@
 // The same source once for every instruction set: Highway includes it again for each.
 #include "filter/engine/kernel.h"
 
-// SSE4, AVX2, AVX-512 and NEON, beside what every machine of the kind has: newer sets (lower bits)
-// are more code to test and no faster here. Before the first header of Highway.
-#define HWY_DISABLED_TARGETS \
-  ((HWY_AVX3 - 1) | HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+#include "filter/engine/targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filter/engine/kernel.cpp"
