@@ -40,7 +40,7 @@ struct BlockSize {
   enum class Kind : std::uint8_t { power, passes, all };
   Kind kind = Kind::passes;
   std::uint32_t base = 2, exponent = 16;  // power: base^exponent contiguous paths, base >= 2
-  std::uint64_t passes = 1;               // passes: this many, >= 1
+  std::uint64_t passes = 4;               // passes: this many, >= 1; measured in README.md
 };
 
 // The terms of w_ij; a threshold that is not set switches its term off.

@@ -91,7 +91,7 @@ TEST_CASE("Every parameter is described, under the name of its option") {
   std::string all;
   for (const auto& [name, value] : filter::describe(parameters)) all += name + "=" + value + " ";
   CHECK(all ==
-        "r0=8px delta=0.3333333333333333 radius-count=samples block=1pass normal=0.95 "
+        "r0=8px delta=0.3333333333333333 radius-count=samples block=4passes normal=0.95 "
         "reflectance=0.05 "
         "visibility=on hit-distance=off plane=off direction=off material=off demodulate=off "
         "iterations=1 "

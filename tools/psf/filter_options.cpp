@@ -105,7 +105,7 @@ void add_filter_options(CLI::App& command, FilterOptions& options) {
       ->capture_default_str();
   command
       .add_option("--block", options.block,
-                  "paths averaged with each other: 2^16, 16passes, all (default 1pass)")
+                  "paths averaged with each other: 2^16, 16passes, all (default 4passes)")
       ->type_name("B");
   add_weights(command, options);
   command.add_flag("--demodulate", options.demodulate,
