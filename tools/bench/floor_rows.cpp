@@ -56,7 +56,7 @@ std::vector<Row> rows_of_sets(const std::string& name, const std::string& what, 
   for (std::size_t k = 1; k < sets.size(); ++k) {
     const Turns turns(repeat, on(best, call), on(sets[k], call));
     rows.push_back({fmt::format("{}_{}", name, sets[k]),
-                    fmt::format("{} / {}, {}", best, sets[k], what), "x", turns.ratio(),
+                    fmt::format("{} as fast as {}, {}", sets[k], best, what), "x", turns.ratio(),
                     std::nullopt, turns.detail()});
   }
   return rows;
@@ -71,7 +71,7 @@ std::vector<Row> floor_rows(const Sample& sample, std::size_t repeat) {
       floor_row("floor_terms", "chi and terms", sample.parameters.weights, repeat)};
   Floor floor(sample.parameters.weights);
   const std::vector<Row> sets =
-      rows_of_sets("floor_terms", "the same", repeat, [&] { return seconds_on_floor(floor); });
+      rows_of_sets("floor_terms", "chi and terms", repeat, [&] { return seconds_on_floor(floor); });
   rows.insert(rows.end(), sets.begin(), sets.end());
   return rows;
 }
