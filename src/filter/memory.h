@@ -27,8 +27,9 @@ namespace psf::filter {
   if (terms.direction) columns += kVector;
   if (terms.material) columns += kWord;
   const std::uint64_t groups = (2 * columns + kSum + kGroup - 1) / kGroup;
+  constexpr std::uint64_t kParents = 2;  // for 256: a node, a point of the index, statistics
 
-  std::uint64_t bytes = kResult + kLists + kRadius + columns + kSum + kQuads + groups;
+  std::uint64_t bytes = kResult + kLists + kRadius + columns + kSum + kQuads + groups + kParents;
   if (parameters.demodulate || parameters.iterations > 1) bytes += kVector;  // what is averaged
   if (disk) bytes += kWord;                                                  // areas
   return bytes;

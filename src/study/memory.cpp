@@ -20,6 +20,8 @@ using filter::BlockSize;
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr std::uint64_t kProgram =
     48 * kMiB;  // libraries, once relocated, and what the allocator keeps
+// Holes that the allocator keeps between the arrays of one block and those of the next.
+constexpr std::uint64_t kHolesShare = 5, kMostHoles = 32 * kMiB;  // of what the filter needs
 constexpr std::uint64_t kThread = 4 * kMiB;  // stack, arena, scratch of the filter
 // What the reader keeps of chunks that blocks cut.
 constexpr std::uint64_t kReaderCache = 32 * kMiB;
@@ -90,6 +92,7 @@ class Planner {
     result.block = longest * record_bytes_;
     result.blocks = blocks;
     result.filter = longest * filter::memory_per_record(r_.parameters);
+    result.filter += std::min(result.filter / kHolesShare, kMostHoles);
     result.stored = longest * dump_.reader().head().stride();
     return result;
   }
