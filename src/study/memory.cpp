@@ -92,7 +92,7 @@ class Planner {
     result.block = longest * record_bytes_;
     result.blocks = blocks;
     result.filter = longest * filter::memory_per_record(r_.parameters);
-    result.filter += std::min(result.filter / kHolesShare, kMostHoles);
+    result.program += std::min(result.filter / kHolesShare, kMostHoles);
     result.stored = longest * dump_.reader().head().stride();
     return result;
   }

@@ -12,7 +12,7 @@ namespace psf::study {
 
 // Bytes. Pages of files are not counted: the reader maps none, so only the program's own code is.
 struct MemoryEstimate {
-  std::uint64_t program = 0;   // libraries, threads, and what the reader keeps
+  std::uint64_t program = 0;   // libraries, threads, and what the reader and the allocator keep
   std::uint64_t pictures = 0;  // sums, and writing them
   std::uint64_t block = 0;     // the records of the longest block, of the channels that are read
   std::uint64_t blocks = 1;    // of them in memory: 2 where the next one is read ahead
