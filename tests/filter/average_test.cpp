@@ -66,29 +66,17 @@ std::size_t check(const Case& c, std::uint32_t seed) {
   return neighbors;
 }
 
-filter::WeightTerms subset(unsigned bits) {
-  filter::WeightTerms terms = filter::WeightTerms::none();
-  if ((bits & 1) != 0) terms.normal = 0.93f;
-  if ((bits & 2) != 0) terms.reflectance = 0.05f;
-  terms.visibility = (bits & 4) != 0;
-  if ((bits & 8) != 0) terms.hit_distance = 0.3f;
-  if ((bits & 16) != 0) terms.plane = 0.4f;
-  if ((bits & 32) != 0) terms.direction = 0.93f;
-  terms.material = (bits & 64) != 0;
-  return terms;
-}
-
 Case plain_case() {
   Case c;
   c.parameters.radius = {0.3, filter::RadiusBasis::distance};
-  c.parameters.weights = subset(3);
+  c.parameters.weights = tests::terms_of(3);
   return c;
 }
 
 TEST_CASE("Every subset of weight terms agrees with the oracle") {
   for (unsigned bits = 0; bits < 128; ++bits) {
     Case c = plain_case();
-    c.parameters.weights = subset(bits);
+    c.parameters.weights = tests::terms_of(bits);
     c.share_unshaded = bits % 2 == 0 ? 0.5 : 0;
     INFO("terms " << bits);
     CHECK(check(c, bits) > c.count / 2);
@@ -131,7 +119,7 @@ TEST_CASE("Subsampled and unshaded records agree with the oracle, orphans too") 
       Case c = plain_case();
       c.parameters.sources = sources;
       c.parameters.radius = {r0, filter::RadiusBasis::distance};
-      c.parameters.weights = subset(1 + 4 + 8 + 64);
+      c.parameters.weights = tests::terms_of(1 + 4 + 8 + 64);
       c.cameras = kTwoCameras;
       c.share_unshaded = 0.3;
       INFO("sources 1/" << sources << ", r0 " << r0);
@@ -144,7 +132,7 @@ TEST_CASE("Orphans far from any source that passes agree with the oracle") {
   Case c = plain_case();
   c.count = 3000;
   c.parameters.radius = {0.01, filter::RadiusBasis::distance};
-  c.parameters.weights = subset(127);
+  c.parameters.weights = tests::terms_of(127);
   c.share_unshaded = 0.6;
   check(c, 10);
 }

@@ -40,19 +40,6 @@ struct EngineCase {
   }
 };
 
-// Bit k: term k, at thresholds that some pairs of random_records() pass and some do not.
-inline filter::WeightTerms terms_of(unsigned bits) {
-  filter::WeightTerms terms = filter::WeightTerms::none();
-  if ((bits & 1) != 0) terms.normal = 0.93f;
-  if ((bits & 2) != 0) terms.reflectance = 0.05f;
-  terms.visibility = (bits & 4) != 0;
-  if ((bits & 8) != 0) terms.hit_distance = 0.3f;
-  if ((bits & 16) != 0) terms.plane = 0.4f;
-  if ((bits & 32) != 0) terms.direction = 0.93f;
-  terms.material = (bits & 64) != 0;
-  return terms;
-}
-
 // What there is to say of the first difference; nothing where there is none. `tolerance`: of
 // averages, relative; 0 asks for the same bytes.
 inline std::string difference(const filter::Average& a, const filter::Average& b,

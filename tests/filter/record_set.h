@@ -1,4 +1,4 @@
-// Records that own their columns, and random ones to filter.
+// Records that own their columns; random ones to filter, and terms that refuse some of their pairs.
 #pragma once
 
 #include <cmath>
@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "filter/parameters.h"
 #include "filter/records.h"
 
 namespace psf::tests {
@@ -96,6 +97,19 @@ inline RecordSet random_records(std::size_t count, std::uint32_t seed, double sh
     }
   }
   return set;
+}
+
+// Bit k: term k, at thresholds that some pairs of random_records() pass and some do not.
+inline filter::WeightTerms terms_of(unsigned bits) {
+  filter::WeightTerms terms = filter::WeightTerms::none();
+  if ((bits & 1) != 0) terms.normal = 0.93f;
+  if ((bits & 2) != 0) terms.reflectance = 0.05f;
+  terms.visibility = (bits & 4) != 0;
+  if ((bits & 8) != 0) terms.hit_distance = 0.3f;
+  if ((bits & 16) != 0) terms.plane = 0.4f;
+  if ((bits & 32) != 0) terms.direction = 0.93f;
+  terms.material = (bits & 64) != 0;
+  return terms;
 }
 
 }  // namespace psf::tests
