@@ -22,8 +22,8 @@ struct Packet {
   const float* columns;
   const float* low;
   const float* high;
-  alignas(64) float r_sq[kWidth];  // squared world units; 0: nothing to find
-  alignas(64) float plane_reach[kWidth];           // t r_i of `plane`
+  alignas(64) float r_sq[kWidth];         // squared world units; 0: nothing to find
+  alignas(64) float plane_reach[kWidth];  // t r_i of `plane`
 
   // What the walk adds to: of the values that pass, and how many.
   alignas(64) double sum[3][kWidth];

@@ -187,7 +187,9 @@ class Terms {
   }
   // For which queries the pair (i, i) passes chi and all terms.
   [[nodiscard]] HWY_INLINE M self() const {
-    const auto own = [this](std::size_t c) { return SourceALane{packet_.columns + c * kWidth + lane_}; };
+    const auto own = [this](std::size_t c) {
+      return SourceALane{packet_.columns + c * kWidth + lane_};
+    };
     M pass = chi().pass(own(0));
     each(bits_, [&](std::size_t, const auto& term, std::size_t c) {
       pass = hn::And(pass, term.pass(own(c)));

@@ -58,8 +58,9 @@ void Tree::bound_group(std::size_t g) {
 
 void Tree::bound_parent(std::size_t p) {
   const float* lows = bounds(kGroups, p);
-  float* low = &levels_[kParents].bounds[p / kWidth * 6 * kWidth] + p % kWidth;
-  extremes(plan_, 3, lows, lows + plan_.count * kWidth, low, low + 3 * kWidth);
+  const std::size_t rows = plan_.count * kWidth;
+  float* low = &levels_[kParents].bounds[p / kWidth * 2 * rows] + p % kWidth;
+  extremes(plan_, plan_.count, lows, lows + rows, low, low + rows);
 }
 
 void Tree::fill_last_family(LevelName level) {

@@ -20,7 +20,7 @@ namespace psf::filter::engine {
 enum LevelName : std::size_t {
   kQuads,    // 4 records, bounds of x alone
   kGroups,   // 16 records, bounds of every column
-  kParents,  // 16 groups, bounds of x alone
+  kParents,  // 16 groups, bounds of every column
   kLevels
 };
 inline constexpr std::size_t kRecordsBelow[kLevels] = {4, kWidth, kWidth* kWidth};
@@ -57,7 +57,7 @@ class Tree {
   // Of every column that is neither a distance to a hit nor an integer: abs(value) <= largest.
   [[nodiscard]] bool all_within(float largest) const;
   [[nodiscard]] std::size_t columns(LevelName level) const {
-    return level == kGroups ? plan_.count : 3;
+    return level == kQuads ? 3 : plan_.count;
   }
   [[nodiscard]] search::Box box(LevelName level, std::size_t node) const;
   // (3, 16) sums of a family's nodes.

@@ -33,7 +33,7 @@ struct Balls {
   }
 };
 
-// What is to be done with the groups below a parent, a bit a group.
+// What is to be done with the nodes of a family, a bit a node.
 struct Judged {
   std::uint32_t touched = 0;            // some pair may pass; of the others none does
   std::uint32_t inside = 0;             // of those: every pair passes chi
@@ -41,11 +41,12 @@ struct Judged {
   std::uint32_t open[kTermCount] = {};  // by term: not known whether every pair passes
 
   // A bit a term.
-  [[nodiscard]] HWY_INLINE std::uint32_t open_at(std::uint32_t group) const {
+  [[nodiscard]] HWY_INLINE std::uint32_t open_at(std::uint32_t node) const {
     std::uint32_t terms = 0;
-    for (std::size_t k = 0; k < kTermCount; ++k) terms |= (open[k] >> group & 1) << k;
+    for (std::size_t k = 0; k < kTermCount; ++k) terms |= (open[k] >> node & 1) << k;
     return terms;
   }
+  [[nodiscard]] HWY_INLINE std::uint32_t whole() const { return inside & closed; }
 };
 
 class Judge {
@@ -68,12 +69,14 @@ class Judge {
     return (1u << count) - 1;
   }
 
-  [[nodiscard]] HWY_INLINE Judged groups(std::size_t parent) const {
-    const float* bounds = tree_.bounds(kGroups, parent);
+  // Of a family of groups or of parents, the nodes of `asked`.
+  [[nodiscard]] HWY_INLINE Judged nodes(LevelName level, std::size_t family,
+                                        std::uint32_t asked) const {
+    const float* bounds = tree_.bounds(level, family);
     const std::size_t columns = tree_.plan().count;
     const Balls balls(queries_, bounds, columns);
     Judged judged;
-    judged.touched = balls.touched & groups_of(parent);
+    judged.touched = balls.touched & asked;
     if (judged.touched == 0) return judged;
     std::uint32_t every = ~0u;
     terms_.each(terms_.bits(), [&](std::size_t k, const auto& term, std::size_t) {
@@ -112,7 +115,14 @@ class AverageWalk {
       Sums(packet_, lane).set_met_itself(Terms(tree_.plan(), on_, packet_, lane).self());
     }
     if (!judge_.is_reached()) return;
-    for (const std::uint32_t parent : parents) visit(parent);
+    for (std::size_t k = 0; k < parents.size();) {
+      const std::size_t family = parents[k] / kWidth;
+      std::uint32_t asked = 0;
+      for (; k < parents.size() && parents[k] / kWidth == family; ++k) {
+        asked |= 1u << parents[k] % kWidth;
+      }
+      visit_parents(family, asked);
+    }
     whole_.add_to(packet_);
   }
 
@@ -120,15 +130,23 @@ class AverageWalk {
   static constexpr std::size_t kQuad = kRecordsBelow[kQuads];
   static constexpr std::size_t kQuadsInGroup = kWidth / kQuad;
 
-  HWY_INLINE void visit(std::size_t parent) {
-    const Judged judged = judge_.groups(parent);
-    if (judged.touched == 0) return;
-    const std::uint32_t whole = judged.inside & judged.closed;
-    if (whole != 0) {
-      std::size_t sources = static_cast<std::size_t>(std::popcount(whole)) * kWidth;
-      if ((whole & ~judge_.full_groups_of(parent)) != 0) sources -= kWidth - tree_.size() % kWidth;
-      whole_.add(tree_.sums(kGroups, parent), whole, sources);
+  // Terms are asked where they can decide that a parent is whole; what they refuse is seen below.
+  HWY_INLINE void visit_parents(std::size_t family, std::uint32_t asked) {
+    const Balls balls(judge_.queries(), tree_.bounds(kParents, family), tree_.plan().count);
+    std::uint32_t left = balls.touched & asked;
+    if ((balls.inside & left) != 0) {
+      const Judged judged = judge_.nodes(kParents, family, left);
+      add_whole(kParents, family, judged.whole());
+      left = judged.touched & ~judged.whole();
     }
+    for (; left != 0; left &= left - 1) visit_groups(family * kWidth + lowest_bit(left));
+  }
+
+  HWY_INLINE void visit_groups(std::size_t parent) {
+    const Judged judged = judge_.nodes(kGroups, parent, judge_.groups_of(parent));
+    if (judged.touched == 0) return;
+    const std::uint32_t whole = judged.whole();
+    add_whole(kGroups, parent, whole);
     const std::uint32_t by_quads = judged.closed & ~whole & judge_.full_groups_of(parent);
     if (by_quads != 0) {
       choose_quads(parent, by_quads);
@@ -140,6 +158,15 @@ class AverageWalk {
         add_group(parent * kWidth + place, judged.open_at(place), lane);
       }
     }
+  }
+
+  // Of the given nodes, every source for every query.
+  HWY_INLINE void add_whole(LevelName level, std::size_t family, std::uint32_t nodes) {
+    if (nodes == 0) return;
+    const std::size_t last = family * kWidth + static_cast<std::size_t>(std::bit_width(nodes)) - 1;
+    const std::size_t before_last = static_cast<std::size_t>(std::popcount(nodes)) - 1;
+    whole_.add(tree_.sums(level, family), nodes,
+               before_last * kRecordsBelow[level] + tree_.size_of(level, last));
   }
 
   // Of the given groups, where chi alone is to be asked: adds the quads inside all balls and lists
