@@ -43,6 +43,24 @@ void Parameters::validate() const {
   require(is_cosine(weights.direction), "--direction: the threshold is a cosine in [-1, 1]");
   require(iterations >= 1, "--iterations: at least 1");
   require(sources >= 1, "--sources: 1/K with K >= 1");
+  require(agree > 0, "--agree: a number of standard errors above 0");
+  if (estimator == Estimator::hash) {
+    require(!weights.plane,
+            "--plane: a plane is one record's, a cell of --estimator hash has none; "
+            "give --plane off");
+    require(iterations == 1,
+            "--iterations: what a cell of --estimator hash shares does not change "
+            "when it is averaged again; give 1");
+    require(!count_refusals, "--refusals: counts what is in balls, and --estimator hash has none");
+  }
+  if (estimator == Estimator::control) {
+    require(iterations == 1,
+            "--iterations: a half of --estimator control has averages of the "
+            "other's sources alone; give 1");
+    require(!count_refusals,
+            "--refusals: the balls of --estimator control hold halves; count with --estimator "
+            "average");
+  }
 }
 
 std::vector<ChannelNeed> optional_channels(const Parameters& parameters) {
@@ -53,10 +71,12 @@ std::vector<ChannelNeed> optional_channels(const Parameters& parameters) {
   };
   const WeightTerms& weights = parameters.weights;
   const bool disk = parameters.estimator == Estimator::disk;
+  const bool hash = parameters.estimator == Estimator::hash;
   const char* average = "give --estimator average";
   need(weights.normal.has_value(), "normal", "--normal", "give --normal off");
   need(weights.plane.has_value(), "normal", "--plane", "give --plane off");
   need(disk, "normal", "--estimator disk", average);
+  need(hash, "normal", "--estimator hash", average);
   need(weights.reflectance.has_value(), "reflectance", "--reflectance", "give --reflectance off");
   need(parameters.demodulate, "reflectance", "--demodulate", "leave --demodulate out");
   need(weights.visibility, "visibility", "--visibility", "give --visibility=off");

@@ -1,6 +1,7 @@
 // Every parameter of the filter, with its default. The equations are in README.md.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -58,8 +59,13 @@ struct WeightTerms {
 
 enum class Estimator : std::uint8_t {
   average,  // [average]
-  disk      // [disk], photon mapping's: divided by the area of the ball's disk
+  disk,     // [disk], photon mapping's: divided by the area of the ball's disk
+  hash,     // [hash]: averages over the cells of a jittered grid, without search
+  control,  // [control]: each half of the sources as control variate of the other, unbiased
+  adaptive  // [adaptive]: [average] in the largest ball whose contributions agree
 };
+inline constexpr std::array<const char*, 5> kEstimatorNames = {"average", "disk", "hash", "control",
+                                                               "adaptive"};
 
 struct Parameters {
   Radius radius;
@@ -69,6 +75,9 @@ struct Parameters {
   std::uint32_t iterations = 1;  // >= 1
   std::uint32_t sources = 1;  // K >= 1: one record in K is a source, the others are queries alone
   Estimator estimator = Estimator::average;
+  // Of [adaptive]: a ball grows until what is around it differs with this many standard errors,
+  // > 0; measured in README.md.
+  double agree = 3;
   search::Kind search = search::Kind::flann;
   bool count_refusals = false;  // pairs in the balls and refusals by term; about doubles the time
 

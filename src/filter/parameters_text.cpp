@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <string_view>
 
@@ -94,6 +95,15 @@ std::uint32_t parse_sources(const std::string& text) {
   throw Error(ErrorCode::usage, fmt::format("--sources: '{}' is no share: write 1/4 or 1", text));
 }
 
+Estimator parse_estimator(const std::string& text) {
+  const auto found = std::find(kEstimatorNames.begin(), kEstimatorNames.end(), text);
+  if (found != kEstimatorNames.end()) {
+    return static_cast<Estimator>(found - kEstimatorNames.begin());
+  }
+  throw Error(ErrorCode::usage, fmt::format("--estimator: '{}' is none: write {}", text,
+                                            fmt::join(kEstimatorNames, ", ")));
+}
+
 std::optional<float> parse_threshold(const std::string& text, const char* option) {
   if (text == "off") return std::nullopt;
   const auto value = number<float>(text);
@@ -128,6 +138,10 @@ std::string to_text(const BlockSize& block) {
   return "all";
 }
 
+std::string to_text(Estimator estimator) {
+  return kEstimatorNames[static_cast<std::size_t>(estimator)];
+}
+
 std::vector<std::pair<std::string, std::string>> describe(const Parameters& p) {
   return {{"r0", to_text(p.radius)},
           {"delta", fmt::format("{}", p.radius.delta)},
@@ -143,7 +157,8 @@ std::vector<std::pair<std::string, std::string>> describe(const Parameters& p) {
           {"demodulate", to_text(p.demodulate)},
           {"iterations", fmt::format("{}", p.iterations)},
           {"sources", fmt::format("1/{}", p.sources)},
-          {"estimator", p.estimator == Estimator::average ? "average" : "disk"},
+          {"estimator", to_text(p.estimator)},
+          {"agree", p.estimator == Estimator::adaptive ? fmt::format("{}", p.agree) : "off"},
           {"search", to_text(p.search)}};
 }
 

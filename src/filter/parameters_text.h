@@ -13,11 +13,13 @@ namespace psf::filter {
 void parse_radius(const std::string& text, Radius& radius);    // 0.02, 8px, 0.5wu: r0 and basis
 [[nodiscard]] BlockSize parse_block(const std::string& text);  // 2^16, 16passes, 1pass, all
 [[nodiscard]] std::uint32_t parse_sources(const std::string& text);  // 1/4: 4
+[[nodiscard]] Estimator parse_estimator(const std::string& text);    // of kEstimatorNames
 // "off", or a number; `option` names it in the error.
 [[nodiscard]] std::optional<float> parse_threshold(const std::string& text, const char* option);
 
 [[nodiscard]] std::string to_text(const Radius& radius);  // as parse_radius takes it
 [[nodiscard]] std::string to_text(const BlockSize& block);
+[[nodiscard]] std::string to_text(Estimator estimator);
 // Every parameter by the name of its option, in the order of the struct.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> describe(
     const Parameters& parameters);

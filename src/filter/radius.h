@@ -17,19 +17,22 @@ namespace psf::filter {
   return radius.r0 / std::sqrt(std::pow(std::max(1.0, n), radius.delta));
 }
 
-// r_i in world units for every record, 0 where d_i is negative. `distance` is read unless the basis
-// is `world`.
+// f_i of a record, 0 where d_i is negative. `distance` is read unless the basis is `world`.
+[[nodiscard]] inline double basis_of(const Radius& radius, const Records& records,
+                                     const Block& block, std::size_t i) {
+  if (radius.basis == RadiusBasis::world) return 1;
+  const double d = std::max(0.0, double{records.distance[i]});
+  if (radius.basis == RadiusBasis::distance) return d;
+  return d * block.cameras[records.camera.empty() ? 0 : records.camera[i]].angle_per_pixel;
+}
+
+// r_i in world units for every record.
 inline void radii(const Radius& radius, const Records& records, const Block& block,
                   std::vector<float>& out) {
   const double scale = radius_scale(radius, block.n);
-  out.assign(records.size(), static_cast<float>(scale));
-  if (radius.basis == RadiusBasis::world) return;
+  out.resize(records.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
-    double f = std::max(0.0, double{records.distance[i]});
-    if (radius.basis == RadiusBasis::footprint) {
-      f *= block.cameras[records.camera.empty() ? 0 : records.camera[i]].angle_per_pixel;
-    }
-    out[i] = static_cast<float>(scale * f);
+    out[i] = static_cast<float>(scale * basis_of(radius, records, block, i));
   }
 }
 

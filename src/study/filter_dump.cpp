@@ -21,16 +21,6 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-std::size_t last_pass(const Dump& dump, const PassSelection& selection) {
-  const std::size_t passes = dump.pass_bounds().size() - 1;
-  const std::size_t last = selection.last.value_or(passes);
-  if (selection.first >= last || last > passes) {
-    throw Error(ErrorCode::usage, fmt::format("{}: has passes 0:{}, {}:{} is no part of them",
-                                              dump.reader().path(), passes, selection.first, last));
-  }
-  return last;
-}
-
 void check_snapshots(const Dump& dump, const std::vector<std::uint64_t>& snapshots,
                      std::uint64_t passes) {
   for (const std::uint64_t snapshot : snapshots) {
@@ -87,7 +77,9 @@ class Runner {
     outcome_.passes = last - first_;
     outcome_.blocks = blocks_->count();
     outcome_.memory =
-        plan_memory(dump_, channels_, {run_.parameters, first_, last, run_.max_memory, copies_});
+        plan_memory(dump_, channels_,
+                    {run_.parameters, first_, last, run_.max_memory,
+                     copies_ * CameraPictures::kBytesOfSums + CameraPictures::kBytesToWrite});
     if (outcome_.pictures.empty()) make_pictures();
   }
 
@@ -98,7 +90,7 @@ class Runner {
         reader_.read(range, ahead ? std::optional((*blocks_)[k + 1]) : std::nullopt).view();
     outcome_.seconds_read = reader_.seconds();
 
-    const filter::Block block = describe(k, range);
+    const filter::Block block = describe_block(dump_, *blocks_, k, run_.parameters.radius.count);
     filter::Average average;
     core::undisturbed([&] {
       filter::radii(run_.parameters.radius, records, block, radius_);
@@ -110,17 +102,6 @@ class Runner {
     if (run_.on_progress) {
       run_.on_progress(range.last - blocks_->all().first, blocks_->all().size());
     }
-  }
-
-  [[nodiscard]] filter::Block describe(std::uint64_t k, const filter::PathRange& range) const {
-    const auto pixels = static_cast<double>(dump_.pixels());
-    const double samples = static_cast<double>(range.last - blocks_->all().first) / pixels;
-    const double within = static_cast<double>(range.size()) / pixels;
-    const bool by_samples = run_.parameters.radius.count == filter::RadiusCount::samples;
-    // Paths enumerated by pixel fill whole pixels even where the block is less than a pass.
-    const bool global = dump_.metadata().enumeration == "global";
-    return {range.first, by_samples ? samples : static_cast<double>(k + 1),
-            global ? within : std::max(1.0, within), dump_.cameras()};
   }
 
   void add_to_pictures(const filter::PathRange& range, const filter::Records& records,

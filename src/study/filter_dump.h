@@ -11,15 +11,10 @@
 #include "filter/statistics.h"
 #include "study/dump.h"
 #include "study/memory.h"
+#include "study/passes.h"
 #include "study/pictures.h"
 
 namespace psf::study {
-
-// Passes [first, last) of a dump, counted from 0; `last` not set: to the end.
-struct PassSelection {
-  std::size_t first = 0;
-  std::optional<std::size_t> last;
-};
 
 struct FilterRun {
   filter::Parameters parameters;

@@ -10,7 +10,6 @@
 #include "core/parallel.h"
 #include "filter/memory.h"
 #include "filter/parameters_text.h"
-#include "study/pictures.h"
 
 namespace psf::study {
 namespace {
@@ -87,11 +86,10 @@ class Planner {
     const std::uint64_t longest = longest_block(size, dump_, r_.first_pass, r_.last_pass);
     MemoryEstimate result;
     result.program = kProgram + kThread * core::thread_count() + reader_bytes(dump_, size);
-    result.pictures =
-        dump_.pixels() * (r_.copies * CameraPictures::kBytesOfSums + CameraPictures::kBytesToWrite);
+    result.pictures = dump_.pixels() * r_.bytes_a_pixel;
     result.block = longest * record_bytes_;
     result.blocks = blocks;
-    result.filter = longest * filter::memory_per_record(r_.parameters);
+    result.filter = longest * filter::memory_per_record(r_.parameters) + r_.beside;
     result.program += std::min(result.filter / kHolesShare, kMostHoles);
     result.stored = longest * dump_.reader().head().stride();
     return result;
@@ -168,6 +166,11 @@ MemoryEstimate plan_memory(const Dump& dump, const ChannelSet& channels,
   const MemoryEstimate alone = planner.estimate(size, 1);
   if (!planner.fits(alone)) planner.refuse();
   return alone;
+}
+
+bool fits_memory(const Dump& dump, const ChannelSet& channels, const MemoryRequest& request) {
+  const Planner planner(dump, channels, request);
+  return planner.fits(planner.estimate(request.parameters.block, 1));
 }
 
 PeakMemory peak_memory() {

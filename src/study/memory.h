@@ -28,13 +28,18 @@ struct MemoryRequest {
   const filter::Parameters& parameters;
   std::size_t first_pass, last_pass;   // [first, last)
   std::optional<std::uint64_t> limit;  // bytes
-  std::uint64_t copies = 1;            // of the pictures' sums
+  std::uint64_t bytes_a_pixel;         // of all pictures, and of writing them
+  std::uint64_t beside = 0;            // bytes that the run takes beside the filter
 };
 
 // With several threads and blocks it is for two blocks, unless they exceed the limit. Throws
 // Error{limit} where not even one at a time keeps it, which says what block would.
 [[nodiscard]] MemoryEstimate plan_memory(const Dump& dump, const ChannelSet& channels,
                                          const MemoryRequest& request);
+
+// Whether plan_memory() would find it possible.
+[[nodiscard]] bool fits_memory(const Dump& dump, const ChannelSet& channels,
+                               const MemoryRequest& request);
 
 // The most memory that this process ever had, in bytes.
 struct PeakMemory {

@@ -57,7 +57,8 @@ bool CameraPictures::add(const filter::Records& records, const filter::Average& 
     if (!is_finite(filtered) || !is_finite(input)) return false;
     filtered_.add(pixel, filtered);
     if (source) unfiltered_.add(pixel, input);
-    details_.add(pixel, Rgb(static_cast<float>(average.neighbors[i]), radius[i], 0));
+    const float r_i = average.radius.empty() ? radius[i] : average.radius[i];
+    details_.add(pixel, Rgb(static_cast<float>(average.neighbors[i]), r_i, 0));
   }
   add_guides(records, i, vertex);
   return true;

@@ -95,7 +95,7 @@ TEST_CASE("Every parameter is described, under the name of its option") {
         "reflectance=0.05 "
         "visibility=on hit-distance=off plane=off direction=off material=off demodulate=off "
         "iterations=1 "
-        "sources=1/4 estimator=average search=flann ");
+        "sources=1/4 estimator=average agree=off search=flann ");
 }
 
 TEST_CASE("Channels are asked for by the parameters that use them") {

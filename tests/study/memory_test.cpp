@@ -25,12 +25,14 @@ class Planned {
     write_dump(folder_ / "a.pvb", set, options);
     dump_.emplace(folder_ / "a.pvb");
   }
+  static constexpr std::uint64_t kBytesAPixel =
+      study::CameraPictures::kBytesOfSums + study::CameraPictures::kBytesToWrite;
   [[nodiscard]] study::MemoryEstimate plan(const std::string& block,
                                            std::optional<std::uint64_t> limit = {}) const {
     filter::Parameters parameters;
     parameters.block = filter::parse_block(block);
     return study::plan_memory(*dump_, dump_->select(parameters, true),
-                              {parameters, 0, passes_, limit});
+                              {parameters, 0, passes_, limit, kBytesAPixel});
   }
   // What the refusal says behind the name of the file.
   [[nodiscard]] std::string refusal(const std::string& block, std::uint64_t limit) const {

@@ -1,16 +1,23 @@
 // psf compare: the error of pictures against a reference.
 #include <fmt/format.h>
 
+#include <charconv>
+#include <filesystem>
+#include <iterator>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <optional>
+#include <regex>
 #include <string>
 #include <vector>
 
 #include "cli.h"
+#include "compare_report.h"
 #include "core/output_file.h"
+#include "core/parallel.h"
 #include "film/image.h"
 #include "formats/error.h"
-#include "study/metrics.h"
+#include "study/error_picture.h"
+#include "study/reference.h"
 #include "verbs.h"
 
 namespace psf::tools {
@@ -18,13 +25,118 @@ namespace {
 
 struct CompareOptions {
   std::string picture, reference;
-  std::string layer;  // prefix of the channels in the picture, "unfiltered-input."
-  std::string metric = "relmse";
-  double max = -1;  // negative: no limit
+  std::string layer;  // of the picture: prefix of its channels, "unfiltered-input"
+  std::string metric = "relMSE";
+  std::optional<double> max, min;
+  std::vector<std::string> regions;  // "X,Y,WxH"; none: the whole picture
+  std::string trim;                  // "0.1%" or "0.001"; empty: nothing
+  study::MetricOptions settings;
+  std::vector<std::string> error_pictures;
+  double error_max = 0;  // 0: chosen by study::error_scale
+  std::string colors = study::kColorMaps[0];
   CommonOptions common;
 };
 
+study::Region parse_region(const std::string& text, const film::Image& picture) {
+  static const std::regex form(R"((\d{1,9}),(\d{1,9}),(\d{1,9})x(\d{1,9}))");
+  std::smatch parts;
+  if (!std::regex_match(text, parts, form)) {
+    throw Error(ErrorCode::usage, "--region " + text + ": no region, write X,Y,WxH in pixels");
+  }
+  const study::Region region = {std::stoul(parts[1]), std::stoul(parts[2]), std::stoul(parts[3]),
+                                std::stoul(parts[4])};
+  if (region.width == 0 || region.height == 0 || region.x + region.width > picture.width ||
+      region.y + region.height > picture.height) {
+    throw Error(ErrorCode::usage,
+                fmt::format("--region {}: is empty or reaches out of {}, which is {}x{}", text,
+                            picture.path, picture.width, picture.height));
+  }
+  return region;
+}
+
+double parse_trim(const std::string& text) {
+  if (text.empty()) return 0;
+  const bool percent = text.back() == '%';
+  const char* end = text.data() + text.size() - (percent ? 1 : 0);
+  double share = 0;
+  const auto [rest, error] = std::from_chars(text.data(), end, share);
+  if (percent) share /= 100;
+  if (error != std::errc() || rest != end || !(share >= 0 && share < 1)) {
+    throw Error(ErrorCode::usage, "--trim " + text + ": no share, write 0.1% or 0.001, below 1");
+  }
+  return share;
+}
+
+// Where there is a bound, in which direction it makes sense.
+void check_bounds(const CompareOptions& options, study::Metric metric) {
+  const bool lower = study::lower_is_better(metric);
+  if (lower ? options.min.has_value() : options.max.has_value()) {
+    throw Error(ErrorCode::usage,
+                fmt::format("{} is better when {}, bound it with {}", study::name(metric),
+                            lower ? "lower" : "higher", lower ? "--max" : "--min"));
+  }
+}
+
+void check_outputs(const CompareOptions& options) {
+  for (const std::string& path : options.error_pictures) film::check_image_path(path);
+  if (!options.common.json.empty()) core::OutputFile probe(options.common.json);
+}
+
+void write_error_pictures(const CompareOptions& options, study::Metric metric,
+                          const study::Errors& errors) {
+  if (options.error_pictures.empty()) return;
+  const study::ErrorScale scale = study::error_scale(errors, metric, options.error_max);
+  for (const std::string& path : options.error_pictures) {
+    study::write_error_picture(path, errors, metric, options.settings, scale, options.colors);
+    const char* what = study::error_name(metric);
+    if (std::filesystem::path(path).extension() == ".exr") {
+      fmt::print("{}: {} in channel Y\n", path, what);
+    } else {
+      fmt::print("{}: {} in {} from 0 to {:.4g}, {} above\n", path, what, options.colors, scale.max,
+                 counted(scale.above, "pixel", "pixels"));
+    }
+  }
+}
+
+// Throws Error{comparison} where a row misses the bound.
+void judge(const CompareOptions& options, const CompareReport& report) {
+  if (!options.max && !options.min) return;
+  for (const CompareRow& row : report.rows) {
+    const std::string where = row.region.empty() ? "" : " in " + row.region;
+    const auto fail = [&](const std::string& what) {
+      throw Error(ErrorCode::comparison, options.picture + ": " + what + where);
+    };
+    if (row.values.non_finite > 0) {
+      fail(fmt::format("no bound holds: {} not finite here or in {}",
+                       counted(row.values.non_finite, "pixel is", "pixels are"),
+                       options.reference));
+    }
+    const double value = row.values[report.first];
+    const std::string text =
+        fmt::format("{} {}", study::name(report.first), value_text(report.first, value));
+    // Written so that a not-a-number fails too.
+    if (options.max && !(value <= *options.max)) {
+      fail(fmt::format("{} is above {:g}", text, *options.max));
+    }
+    if (options.min && !(value >= *options.min)) {
+      fail(fmt::format("{} is below {:g}", text, *options.min));
+    }
+  }
+}
+
 void run(const CompareOptions& options) {
+  const core::ThreadLimit threads(options.common.threads);
+  CompareReport report;
+  report.picture = options.picture;
+  report.layer = options.layer;
+  report.reference = options.reference;
+  report.options = options.settings;
+  report.options.validate();
+  report.first = study::parse_metric(options.metric);
+  report.trim = parse_trim(options.trim);
+  check_bounds(options, report.first);
+  check_outputs(options);
+
   const film::Image picture = film::read_exr(options.picture);
   const film::Image reference = film::read_exr(options.reference);
   if (picture.width != reference.width || picture.height != reference.height) {
@@ -33,23 +145,28 @@ void run(const CompareOptions& options) {
                             options.picture, picture.width, picture.height, options.reference,
                             reference.width, reference.height));
   }
-  const std::string prefix = options.layer.empty() ? "" : options.layer + ".";
-  const study::Metrics metrics = study::compare(picture.rgb(prefix), reference.rgb());
-  fmt::print("relMSE {:.6g}  (epsilon {:g})\nMSE    {:.6g}\nPSNR   {:.2f} dB\n", metrics.rel_mse,
-             study::kRelMseEpsilon, metrics.mse, metrics.psnr);
+  std::vector<study::Choice> choices;
+  for (const std::string& text : options.regions) {
+    choices.push_back({parse_region(text, picture), report.trim});
+    report.rows.push_back({text, {}});
+  }
+  if (choices.empty()) {
+    choices.push_back({std::nullopt, report.trim});
+    report.rows.push_back({});
+  }
+  const bool dotted = options.layer.empty() || options.layer.ends_with('.');
+  const std::vector<Rgb> colors = picture.rgb(options.layer + (dotted ? "" : "."));
+  const study::Errors errors =
+      study::Reference(reference.rgb(), reference.width, options.settings).errors(colors);
+  for (std::size_t k = 0; k < choices.size(); ++k) report.rows[k].values = errors.mean(choices[k]);
+
+  print_values(report);
+  print_left_out(report);
+  write_error_pictures(options, report.first, errors);
   if (!options.common.json.empty()) {
-    const nlohmann::ordered_json figures = {
-        {"picture", options.picture}, {"reference", options.reference},
-        {"relmse", metrics.rel_mse},  {"relmse_epsilon", study::kRelMseEpsilon},
-        {"mse", metrics.mse},         {"psnr", metrics.psnr}};
-    core::write_text_file(options.common.json, figures.dump(2) + "\n");
+    core::write_text_file(options.common.json, to_json(report).dump(2) + "\n");
   }
-  const double value = options.metric == "mse" ? metrics.mse : metrics.rel_mse;
-  // Written so that a not-a-number fails too.
-  if (options.max >= 0 && !(value <= options.max)) {
-    throw Error(ErrorCode::comparison, fmt::format("{}: {} {:.6g} is above {:g}", options.picture,
-                                                   options.metric, value, options.max));
-  }
+  judge(options, report);
 }
 
 }  // namespace
@@ -65,13 +182,60 @@ void add_compare(CLI::App& app) {
       ->add_option("--layer", options->layer,
                    "compare this layer of PICTURE, for example unfiltered-input")
       ->type_name("NAME");
-  command->add_option("--metric", options->metric, "the metric that --max looks at")
-      ->check(CLI::IsMember({"relmse", "mse"}))
+  command
+      ->add_option("--metric", options->metric,
+                   "relMSE, MSE, SMAPE, MAPE, PSNR, SSIM or FLIP: printed first, bounded by --max "
+                   "or --min, shown by --error")
+      ->type_name("NAME")
       ->capture_default_str();
   command->add_option("--max", options->max, "exit with 1 where the metric is above this")
       ->check(CLI::NonNegativeNumber);
+  command->add_option("--min", options->min,
+                      "exit with 1 where the metric, PSNR or SSIM, is below this");
+  command
+      ->add_option("--region", options->regions,
+                   "measure these pixels instead of the whole picture; repeatable, a row each, and "
+                   "the bound is for each")
+      ->type_name("X,Y,WxH")
+      ->expected(1)
+      ->take_all();
+  command
+      ->add_option("--trim", options->trim,
+                   "leave out of each metric this share of the pixels, those of the largest error: "
+                   "0.1%")
+      ->type_name("SHARE");
+  command
+      ->add_option("--epsilon", options->settings.epsilon,
+                   "added below the line in relMSE, SMAPE and MAPE")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--exposure", options->settings.exposure,
+                   "stops; SSIM and FLIP see the pictures brighter by this, then tone-mapped")
+      ->capture_default_str();
+  command
+      ->add_option("--ppd", options->settings.pixels_per_degree,
+                   "pixels per degree of the viewer that FLIP assumes; 67 is a 4K screen of 0.7 m "
+                   "at 0.7 m")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  command
+      ->add_option("--error", options->error_pictures,
+                   "write the metric of every pixel: .exr as values, .png in false colour, cyan "
+                   "where not finite; repeatable")
+      ->type_name("FILE")
+      ->expected(1)
+      ->take_all();
+  command
+      ->add_option("--error-max", options->error_max,
+                   "error of the brightest colour; without: what 99% of the pixels do not exceed")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--colors", options->colors, "colour map of --error")
+      ->check(CLI::IsMember(
+          std::vector<std::string>(std::begin(study::kColorMaps), std::end(study::kColorMaps))))
+      ->capture_default_str();
   add_common(*command, options->common);
-  set_example(*command, "psf compare filtered.exr reference.exr --max 0.01");
+  set_example(*command, "psf compare filtered.exr reference.exr --metric FLIP --max 0.1");
   command->callback([options] { run(*options); });
 }
 

@@ -9,7 +9,7 @@
 namespace psf::tools {
 namespace {
 
-filter::WeightTerms weights_of(const FilterOptions& options) {
+filter::WeightTerms weights_of(const ParameterOptions& options) {
   using filter::parse_threshold;
   filter::WeightTerms terms =
       options.no_weights ? filter::WeightTerms::none() : filter::WeightTerms();
@@ -26,7 +26,7 @@ filter::WeightTerms weights_of(const FilterOptions& options) {
   return terms;
 }
 
-void add_weights(CLI::App& command, FilterOptions& options) {
+void add_weights(CLI::App& command, ParameterOptions& options) {
   const auto term = [&command](const char* name, std::string& text, const char* help) {
     command.add_option(name, text, help)->type_name("T|off")->group("Weights");
   };
@@ -49,7 +49,7 @@ void add_weights(CLI::App& command, FilterOptions& options) {
 
 }  // namespace
 
-filter::Parameters parameters_of(const FilterOptions& options) {
+filter::Parameters parameters_of(const ParameterOptions& options) {
   filter::Parameters parameters;
   if (!options.r0.empty()) filter::parse_radius(options.r0, parameters.radius);
   parameters.radius.delta = options.delta;
@@ -60,13 +60,18 @@ filter::Parameters parameters_of(const FilterOptions& options) {
   parameters.demodulate = options.demodulate;
   parameters.iterations = options.iterations;
   if (!options.sources.empty()) parameters.sources = filter::parse_sources(options.sources);
-  parameters.estimator =
-      options.estimator == "disk" ? filter::Estimator::disk : filter::Estimator::average;
+  parameters.estimator = filter::parse_estimator(options.estimator);
+  parameters.agree = options.agree;
   parameters.search = options.search == "brute"   ? search::Kind::brute
                       : options.search == "plain" ? search::Kind::plain
                                                   : search::Kind::flann;
-  parameters.count_refusals = options.refusals;
   parameters.validate();
+  return parameters;
+}
+
+filter::Parameters parameters_of(const FilterOptions& options) {
+  filter::Parameters parameters = parameters_of(static_cast<const ParameterOptions&>(options));
+  parameters.count_refusals = options.refusals;
   return parameters;
 }
 
@@ -86,14 +91,7 @@ std::vector<std::uint64_t> snapshots_of(const std::string& text, std::uint64_t p
   return list;
 }
 
-void add_filter_options(CLI::App& command, FilterOptions& options) {
-  command.add_option("IN", options.input, "path-vertex buffer")->required()->type_name("FILE.pvb");
-  command
-      .add_option("-o,--output", options.outputs,
-                  "picture, .exr with all layers or .png; may be repeated")
-      ->required()
-      ->type_name("FILE")
-      ->allow_extra_args(false);
+void add_parameter_options(CLI::App& command, ParameterOptions& options) {
   command.add_option("--r0", options.r0, "radius: 8px, 0.02 of the distance, 0.5wu (default 8px)")
       ->type_name("R");
   command
@@ -114,20 +112,39 @@ void add_filter_options(CLI::App& command, FilterOptions& options) {
       ->capture_default_str();
   command.add_option("--sources", options.sources, "use only this share of the contributions")
       ->type_name("1/K");
-  command.add_option("--estimator", options.estimator, "average, or disk: photon mapping's")
-      ->check(CLI::IsMember({"average", "disk"}))
-      ->capture_default_str();
-  command.add_option("--passes", options.passes, kPassesHelp)->type_name("FIRST:LAST");
   command
-      .add_option("--snapshots", options.snapshots,
-                  "also write FILE.0001.exr ... after so many passes")
-      ->type_name("pow2|N,N,...");
+      .add_option("--estimator", options.estimator,
+                  "average; disk: photon mapping's; hash: cells of a jittered grid; control: halves "
+                  "as control variates, unbiased; adaptive: balls whose contributions agree")
+      ->check(CLI::IsMember(filter::kEstimatorNames))
+      ->capture_default_str();
+  command
+      .add_option("--agree", options.agree,
+                  "of --estimator adaptive: a ball grows while what is around it differs by at most "
+                  "so many standard errors")
+      ->capture_default_str();
   command
       .add_option(
           "--search", options.search,
           "engine: flann; the same result from plain FLANN, a search a record, or by brute force")
       ->check(CLI::IsMember({"flann", "plain", "brute"}))
       ->capture_default_str();
+}
+
+void add_filter_options(CLI::App& command, FilterOptions& options) {
+  command.add_option("IN", options.input, "path-vertex buffer")->required()->type_name("FILE.pvb");
+  command
+      .add_option("-o,--output", options.outputs,
+                  "picture, .exr with all layers or .png; may be repeated")
+      ->required()
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  add_parameter_options(command, options);
+  command.add_option("--passes", options.passes, kPassesHelp)->type_name("FIRST:LAST");
+  command
+      .add_option("--snapshots", options.snapshots,
+                  "also write FILE.0001.exr ... after so many passes")
+      ->type_name("pow2|N,N,...");
   command.add_flag("--refusals", options.refusals,
                    "count the pairs in the ball and what each weight refuses: slower");
   command

@@ -1,4 +1,4 @@
-// The command line of psf filter.
+// The command line of psf filter, and of other verbs the part of it that says how to filter.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -13,26 +13,33 @@
 
 namespace psf::tools {
 
-struct FilterOptions {
-  CommonOptions common;
-  std::string input;
-  std::vector<std::string> outputs;
+// Every parameter of the filter but what a run counts.
+struct ParameterOptions {
   // As written; empty: the default.
-  std::string r0, block, normal, reflectance, hit_distance, plane, direction, sources, passes,
-      snapshots;
-  double delta = filter::Radius().delta;
+  std::string r0, block, normal, reflectance, hit_distance, plane, direction, sources;
+  double delta = filter::Radius().delta, agree = filter::Parameters().agree;
   std::optional<bool> visibility;
   bool material = false, no_weights = false;
-  bool demodulate = false, refusals = false, follow = false;
-  std::optional<std::uint64_t> max_memory;  // bytes
+  bool demodulate = false;
   std::uint32_t iterations = 1;
   std::string search = "flann", estimator = "average", radius_count = "samples";
 };
 
-// Declares the options, which write into `options`.
+struct FilterOptions : ParameterOptions {
+  CommonOptions common;
+  std::string input;
+  std::vector<std::string> outputs;
+  std::string passes, snapshots;  // as written; empty: all, none
+  bool refusals = false, follow = false;
+  std::optional<std::uint64_t> max_memory;  // bytes
+};
+
+// Each declares its options, which write into `options`.
+void add_parameter_options(CLI::App& command, ParameterOptions& options);
 void add_filter_options(CLI::App& command, FilterOptions& options);
 
-// Throws Error{usage} naming the option whose text is no value of it.
+// Each throws Error{usage} naming the option whose text is no value of it.
+[[nodiscard]] filter::Parameters parameters_of(const ParameterOptions& options);
 [[nodiscard]] filter::Parameters parameters_of(const FilterOptions& options);
 // Of a run over `passes` passes, ascending.
 [[nodiscard]] std::vector<std::uint64_t> snapshots_of(const std::string& text,

@@ -16,5 +16,9 @@ int main(int argc, char** argv) {
   psf::tools::add_cat(app);
   psf::tools::add_export(app);
   psf::tools::add_compare(app);
+  psf::tools::add_sweep(app);
+  psf::tools::add_converge(app);
+  psf::tools::add_explain(app);
+  psf::tools::add_report(app);
   return psf::tools::run_tool(app, argc, argv);
 }

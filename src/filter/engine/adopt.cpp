@@ -69,8 +69,7 @@ class Nearest {
 }  // namespace
 
 Adopted adopt(const Tree& tree, const search::BoxIndex& index, const Problem& problem,
-              std::uint32_t i) {
-  const float r_i = problem.radius[i];
+              std::uint32_t i, float r_i) {
   const float r_sq = std::max(kLeast, kGrowth * r_i * r_i);
   const auto pass = [&](std::uint32_t j) { return problem.weights.pass(i, j, r_i); };
   const std::span<const Vec3> x = problem.records.position;

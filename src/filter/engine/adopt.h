@@ -9,8 +9,9 @@
 
 namespace psf::filter::engine {
 
-// The same as adopt() of orphans.h. `index`: over the nodes of the tree's upper level.
+// The same as adopt() of orphans.h, for a radius r_i. `index`: over the nodes of the tree's upper
+// level.
 [[nodiscard]] Adopted adopt(const Tree& tree, const search::BoxIndex& index, const Problem& problem,
-                            std::uint32_t i);
+                            std::uint32_t i, float r_i);
 
 }  // namespace psf::filter::engine

@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "filter/engine/count-inl.h"
+#include "filter/engine/rings-inl.h"
 #include "filter/engine/walk-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -45,6 +46,11 @@ void average_on(const Tree& tree, const WeightTerms& terms, std::span<const std:
   AverageWalk(tree, terms, packet).run(parents);
 }
 
+void average_rings_on(const Tree& tree, const WeightTerms& terms, const RingTable& table,
+                      std::span<const std::uint32_t> parents, Packet& packet, RingPacket& rings) {
+  RingWalk(tree, terms, table, packet, rings).run(parents);
+}
+
 void count_on(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
               const Packet& packet, PairCounts& counts) {
   CountWalk(tree, terms, packet, counts).run(parents);
@@ -58,6 +64,7 @@ namespace psf::filter::engine {
 
 HWY_EXPORT(extremes_on);
 HWY_EXPORT(average_on);
+HWY_EXPORT(average_rings_on);
 HWY_EXPORT(count_on);
 
 void extremes(const ColumnPlan& plan, std::size_t columns, const float* lows, const float* highs,
@@ -67,6 +74,10 @@ void extremes(const ColumnPlan& plan, std::size_t columns, const float* lows, co
 void average(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
              Packet& packet) {
   HWY_DYNAMIC_DISPATCH(average_on)(tree, terms, parents, packet);
+}
+void average_rings(const Tree& tree, const WeightTerms& terms, const RingTable& table,
+                   std::span<const std::uint32_t> parents, Packet& packet, RingPacket& rings) {
+  HWY_DYNAMIC_DISPATCH(average_rings_on)(tree, terms, table, parents, packet, rings);
 }
 void count_pairs(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
                  const Packet& packet, PairCounts& counts) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "filter/engine/ring_table.h"
 #include "filter/engine/tree.h"
 #include "filter/weights.h"
 
@@ -33,6 +34,18 @@ struct Packet {
   alignas(64) std::int32_t met_itself[kWidth];
 };
 
+// What a packet needs for several radii, of which Packet has the largest; borrowed. (16, rings) and
+// so on are those of a RingTable.
+struct RingPacket {
+  alignas(64) float inverse_basis_sq[kWidth];  // 1 / f_i^2; NaN where it is not within the table's
+                                               // limits: then every pair is compared
+  const float* r;                              // (16, rings) world units
+  const float* r_sq;                           // (16, rings)
+  // What the walk adds to: sums of the values that pass, red, green, blue, and how many.
+  double* sums;   // (16, rings + 1, 4); the last ring is of no use
+  double* whole;  // (rings, 4), for every query
+};
+
 // Counts of pairs for the statistics, the pair (i, i) included.
 struct PairCounts {
   std::uint64_t candidates = 0;                     // chi = 1
@@ -49,6 +62,10 @@ void extremes(const ColumnPlan& plan, std::size_t columns, const float* lows, co
 // term that is on.
 void average(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
              Packet& packet);
+
+// The same by rings, for all radii of `table` in one walk; sets packet.met_itself too.
+void average_rings(const Tree& tree, const WeightTerms& terms, const RingTable& table,
+                   std::span<const std::uint32_t> parents, Packet& packet, RingPacket& rings);
 
 // Adds to `counts` the pairs of the packet's queries with the sources below the given parents.
 void count_pairs(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,

@@ -1,0 +1,26 @@
+// [adaptive]'s test: up to which of several balls around a query contributions agree.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace psf::filter {
+
+// Of the luminance of what is in a ball.
+struct Moments {
+  std::uint32_t count = 0;
+  double mean = 0, mean_sq = 0;
+};
+
+// Below so many contributions on either side there is no test, and the ball grows.
+inline constexpr std::uint32_t kFewestTested = 8;
+
+// Whether the mean of what `larger` has beyond `ball`, a part of it, is within `agree` standard
+// errors of the mean of `ball` (Welch 1947: each side has a variance of its own). One firefly, as
+// bright as can be, has a standard error of its own size, so it makes no ball stop.
+[[nodiscard]] bool agrees(const Moments& ball, const Moments& larger, double agree);
+
+// The last of `balls`, each a part of the next, up to which each agrees with the one before.
+[[nodiscard]] std::size_t last_that_agrees(std::span<const Moments> balls, double agree);
+
+}  // namespace psf::filter

@@ -1,0 +1,51 @@
+// [average] or [disk] for several radii from one walk of the tree.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "filter/engine/packets.h"
+#include "filter/problem.h"
+
+namespace psf::filter::engine {
+
+class RingEngine {
+ public:
+  // The radii of record i are float(scale * basis[i]), as of radius.h; problem.radius is the
+  // largest one. `scales`: as RingTable takes them. All borrowed, but the scales.
+  RingEngine(const Problem& problem, std::span<const double> scales, std::span<const double> basis)
+      : p_(problem), basis_(basis), table_(scales), packets_(problem) {}
+
+  // What a query is given for every scale, ascending; valid during a call.
+  struct Results {
+    std::uint32_t query;            // record number
+    std::span<const float> radius;  // r_i
+    std::span<const Rgb> average;
+    std::span<const std::uint32_t> neighbors;  // sources averaged; 0 for an orphan
+  };
+
+  // Where it is not, nothing else may be asked.
+  [[nodiscard]] bool is_moderate() const { return packets_.is_moderate(); }
+  [[nodiscard]] std::span<const std::uint32_t> queries() const { return packets_.order(); }
+  // values[j] of every source, by record number; before average().
+  void set_values(std::span<const Rgb> values);
+
+  // Visits queries [begin, end) of queries() in this order, begin a multiple of kGrain, at most
+  // kGrain of them. Adds to statistics[k] of scale k what is counted of queries.
+  static constexpr std::size_t kGrain = Packets::kGrain;
+  void average(std::size_t begin, std::size_t end, std::span<Statistics> statistics,
+               const std::function<void(const Results&)>& visit) const;
+
+ private:
+  class Range;
+
+  const Problem& p_;
+  std::span<const double> basis_;
+  std::span<const Rgb> values_;
+  RingTable table_;
+  Packets packets_;
+};
+
+}  // namespace psf::filter::engine

@@ -1,0 +1,51 @@
+#include "filter/inputs.h"
+
+#include <string>
+#include <string_view>
+
+#include "core/error.h"
+
+namespace psf::filter {
+
+void require_channels(const Records& records, const Parameters& parameters) {
+  if (records.size() == 0) return;
+  const auto has = [&records](std::string_view channel) {
+    if (channel == "normal") return !records.normal.empty();
+    if (channel == "reflectance") return !records.reflectance.empty();
+    if (channel == "visibility") return !records.visibility.empty();
+    if (channel == "hit_distance") return !records.hit_distance.empty();
+    if (channel == "direction") return !records.direction.empty();
+    return !records.material.empty();
+  };
+  for (const ChannelNeed& need : optional_channels(parameters)) {
+    if (has(need.channel)) continue;
+    throw Error(ErrorCode::bad_input, "the records have no channel " + std::string(need.channel) +
+                                          ", which " + std::string(need.wanted_by) + " needs");
+  }
+}
+
+std::vector<float> areas(const Records& records, const Roles& roles, const Block& block) {
+  if (block.cameras.size() > 1) {
+    throw Error(ErrorCode::usage,
+                "--estimator disk counts a surface once for every camera that sees it: "
+                "it needs a dump of one camera");
+  }
+  std::vector<float> area(records.size());
+  for (const std::uint32_t j : roles.sources) {
+    area[j] = static_cast<float>(surface_area(block.cameras[0].angle_per_pixel,
+                                              double{records.distance[j]}, records.normal[j],
+                                              records.direction[j], block.samples_per_pixel));
+  }
+  return area;
+}
+
+// c / rho of the sources.
+std::vector<Rgb> demodulated(const Records& records, const Roles& roles) {
+  std::vector<Rgb> values(records.size(), Rgb(0, 0, 0));
+  for (const std::uint32_t j : roles.sources) {
+    values[j] = demodulate(records.contribution[j], records.reflectance[j]);
+  }
+  return values;
+}
+
+}  // namespace psf::filter

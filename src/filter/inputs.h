@@ -1,0 +1,38 @@
+// What an estimator starts from: channels that are there, values to average, areas.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "filter/parameters.h"
+#include "filter/records.h"
+#include "filter/roles.h"
+#include "filter/values.h"
+
+namespace psf::filter {
+
+// Throws Error{bad_input} naming the channel that `parameters` use and `records` do not have.
+void require_channels(const Records& records, const Parameters& parameters);
+
+// By record number: c / rho of the sources, 0 elsewhere.
+[[nodiscard]] std::vector<Rgb> demodulated(const Records& records, const Roles& roles);
+
+// By record number: A_j of [disk] of the sources, 0 elsewhere. Throws Error{usage} where the block
+// has several cameras.
+[[nodiscard]] std::vector<float> areas(const Records& records, const Roles& roles,
+                                       const Block& block);
+
+// Back from what was averaged over so many sources to radiance. Who averaged over itself alone
+// keeps its own value, which dividing and multiplying would round.
+[[nodiscard]] inline Rgb finished(const Rgb& averaged, std::uint32_t neighbors, bool is_source,
+                                  float r_i, const Records& records, std::uint32_t i,
+                                  const Parameters& parameters) {
+  if (neighbors == 1 && is_source &&
+      (parameters.estimator != Estimator::disk || r_i * r_i == 0)) {
+    return records.contribution[i];
+  }
+  return parameters.demodulate ? remodulate(averaged, records.reflectance[i]) : averaged;
+}
+
+}  // namespace psf::filter

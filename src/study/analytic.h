@@ -1,0 +1,57 @@
+// Built-in scenes whose filtered pictures are known in closed form: what a convergence study must
+// find.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/vec.h"
+#include "filter/parameters.h"
+#include "study/replicates.h"
+
+namespace psf::study {
+
+// The unit square seen from above by kSize x kSize pixels, distance 1, a path a pixel and pass at a
+// random place in it. c = f(x) times an exponential random number of mean 1.
+enum class AnalyticScene : std::uint8_t {
+  smooth,  // f = 1 + cos(4 pi x) / 2
+  edge     // f = 1 left of the middle, 3 right of it
+};
+
+class Analytic {
+ public:
+  static constexpr std::size_t kSize = 128;  // pixels
+
+  explicit Analytic(AnalyticScene scene) : scene_(scene) {}
+
+  [[nodiscard]] const char* name() const;  // "smooth", "edge"
+  // (kSize, kSize) means of f over the pixels.
+  [[nodiscard]] std::vector<Rgb> reference() const;
+  // Writes a dump; other seeds are independent.
+  void write_dump(const std::string& path, std::uint64_t seed, std::uint64_t passes) const;
+
+  // Where no ball of this radius, in pixels, is cut by the border of the square.
+  [[nodiscard]] static Rectangle inside(double radius);
+
+  // Blocks of one pass, no weights, footprint. E[picture] after n passes minus the reference, as
+  // mean square over r^2 + epsilon in `inside`: what `bias_sq` should be, but for the record's own
+  // share of its ball.
+  [[nodiscard]] double bias_sq(const filter::Radius& radius, std::uint64_t n, double epsilon,
+                               const Rectangle& inside) const;
+  // Proportional to what `variance` should be while balls hold many records.
+  [[nodiscard]] static double relative_variance(const filter::Radius& radius, std::uint64_t n);
+
+ private:
+  [[nodiscard]] double f(double x) const;
+  // Mean of f over a disk of radius r around a point.
+  [[nodiscard]] double f_over_disk(double x, double r) const;
+
+  AnalyticScene scene_;
+};
+
+// The slope of a straight line through log(value) over log(n), by least squares.
+[[nodiscard]] double fitted_slope(const std::vector<double>& n, const std::vector<double>& values);
+
+}  // namespace psf::study

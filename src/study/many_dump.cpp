@@ -1,0 +1,170 @@
+#include "study/many_dump.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "core/parallel.h"
+#include "filter/blocks.h"
+#include "filter/radius.h"
+#include "study/block_reader.h"
+
+namespace psf::study {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Pictures beside those that grow: of a last block that is not whole, and one to look at.
+constexpr std::uint64_t kCopies = 2;
+
+std::uint64_t longest_of_two(const Dump& dump, const ManyRun& run, std::size_t last) {
+  const filter::Blocks blocks(run.parameters.block, dump.pass_bounds(), run.passes.first, last);
+  std::uint64_t longest = 0;
+  for (std::uint64_t k = 0; k < std::min<std::uint64_t>(blocks.count(), 2); ++k) {
+    longest = std::max(longest, blocks[k].size());
+  }
+  return longest;
+}
+
+MemoryRequest request_of(const Dump& dump, const ManyRun& run, std::size_t last,
+                         std::size_t radii) {
+  return {run.parameters,
+          run.passes.first,
+          last,
+          run.max_memory,
+          kCopies * ManyPictures::bytes_of_sums(radii),
+          filter::memory_of_many(radii, longest_of_two(dump, run, last))};
+}
+
+class ManyRunner {
+ public:
+  ManyRunner(const Dump& dump, const ManyRun& run)
+      : dump_(dump),
+        run_(run),
+        first_(run.passes.first),
+        last_(last_pass(dump, run.passes)),
+        channels_(dump.select(run.parameters, false)),
+        reader_(dump, channels_) {
+    outcome_.memory =
+        plan_memory(dump_, channels_, request_of(dump_, run_, last_, run_.radii.size()));
+    for (const filter::CameraView& camera : dump_.cameras()) {
+      outcome_.pictures.emplace_back(camera, run_.radii.size());
+    }
+    outcome_.statistics.resize(run_.radii.size());
+  }
+
+  ManyOutcome run() {
+    std::vector<std::uint64_t> snapshots = run_.snapshots;
+    if (snapshots.empty()) snapshots.push_back(last_ - first_);
+    for (const std::uint64_t n : snapshots) {
+      const bool final = n == snapshots.back();
+      filter_up_to(n, final);
+    }
+    return std::move(outcome_);
+  }
+
+ private:
+  // Whole blocks are kept from one number of passes to the next.
+  void filter_up_to(std::uint64_t n, bool final) {
+    const filter::Blocks blocks(run_.parameters.block, dump_.pass_bounds(), first_, first_ + n);
+    outcome_.passes = n;
+    outcome_.blocks = blocks.count();
+    while (next_block_ < blocks.count() && blocks.is_whole(next_block_)) {
+      filter_block(blocks, next_block_++);
+    }
+    if (next_block_ == blocks.count()) {
+      if (run_.on_snapshot) run_.on_snapshot(n, outcome_);
+      return;
+    }
+    std::optional<ManyOutcome> whole;
+    if (!final) whole = outcome_;
+    filter_block(blocks, next_block_);
+    if (run_.on_snapshot) run_.on_snapshot(n, outcome_);
+    if (!whole) return;
+    whole->seconds = outcome_.seconds;
+    outcome_ = std::move(*whole);
+  }
+
+  void filter_block(const filter::Blocks& blocks, std::uint64_t k) {
+    const auto start = Clock::now();
+    const filter::PathRange range = blocks[k];
+    const bool ahead = outcome_.memory.blocks > 1 && k + 1 < blocks.count();
+    const filter::Records records =
+        reader_.read(range, ahead ? std::optional(blocks[k + 1]) : std::nullopt).view();
+    const filter::Block block = describe_block(dump_, blocks, k, run_.radii.front().count);
+    filter::ManyAverages averages;
+    core::undisturbed([&] {
+      averages = filter::average_many(
+          records, block, run_.parameters, run_.radii, [&](const filter::Slab& slab) {
+            outcome_.overflows += add_slab(records, slab, outcome_.pictures);
+          });
+    });
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      const std::size_t camera = records.camera.empty() ? 0 : records.camera[i];
+      outcome_.pictures[camera].add_record(records, averages.roles[i], i);
+    }
+    for (std::size_t r = 0; r < run_.radii.size(); ++r) {
+      outcome_.statistics[r] += averages.statistics[r];
+    }
+    set_radius(records, block, averages.roles);
+    outcome_.seconds += std::chrono::duration<double>(Clock::now() - start).count();
+    if (run_.on_progress) {
+      run_.on_progress(range.last - dump_.pass_bounds()[first_],
+                       dump_.pass_bounds()[last_] - dump_.pass_bounds()[first_]);
+    }
+  }
+
+  void set_radius(const filter::Records& records, const filter::Block& block,
+                  const std::vector<filter::Role>& roles) {
+    const double pixels = pixels_of_basis(records, block, roles);
+    outcome_.last_radius.clear();
+    for (const filter::Radius& radius : run_.radii) {
+      outcome_.last_radius.push_back(filter::radius_scale(radius, block.n) * pixels);
+    }
+    if (outcome_.first_radius.empty()) outcome_.first_radius = outcome_.last_radius;
+  }
+  // Mean of f_i over the footprint of a pixel.
+  [[nodiscard]] double pixels_of_basis(const filter::Records& records, const filter::Block& block,
+                                       const std::vector<filter::Role>& roles) const {
+    const filter::Radius& basis = run_.radii.front();
+    if (basis.basis == filter::RadiusBasis::footprint) return 1;
+    double sum = 0;
+    std::uint64_t count = 0;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      if (roles[i] != filter::Role::query && roles[i] != filter::Role::source) continue;
+      const std::size_t camera = records.camera.empty() ? 0 : records.camera[i];
+      const double footprint = block.cameras[camera].angle_per_pixel * double{records.distance[i]};
+      if (!(footprint > 0)) continue;
+      sum += filter::basis_of(basis, records, block, i) / footprint;
+      ++count;
+    }
+    return count == 0 ? 0 : sum / static_cast<double>(count);
+  }
+
+  const Dump& dump_;
+  const ManyRun& run_;
+  std::size_t first_, last_;  // passes
+  ChannelSet channels_;
+  BlockReader reader_;
+  std::uint64_t next_block_ = 0;
+  ManyOutcome outcome_;
+};
+
+}  // namespace
+
+ManyOutcome filter_many(const Dump& dump, const ManyRun& run) {
+  run.parameters.validate();
+  return ManyRunner(dump, run).run();
+}
+
+std::size_t radii_at_once(const Dump& dump, const ManyRun& run) {
+  const std::size_t last = last_pass(dump, run.passes);
+  const ChannelSet channels = dump.select(run.parameters, false);
+  std::size_t radii = run.radii.size();
+  while (radii > 1 && !fits_memory(dump, channels, request_of(dump, run, last, radii))) {
+    radii = (radii + 1) / 2;
+  }
+  return radii;
+}
+
+}  // namespace psf::study

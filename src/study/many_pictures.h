@@ -1,0 +1,71 @@
+// The pictures of one camera for many radii, as sums [pixel].
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "film/film.h"
+#include "filter/average.h"
+#include "filter/many_radii.h"
+#include "filter/records.h"
+
+namespace psf::study {
+
+class ManyPictures {
+ public:
+  ManyPictures(const filter::CameraView& camera, std::size_t radii);
+
+  [[nodiscard]] std::size_t width() const { return input_.width(); }
+  [[nodiscard]] std::size_t height() const { return input_.height(); }
+
+  // (height, width) of radius k: the picture that CameraPictures gives, but for rounding.
+  [[nodiscard]] std::vector<Rgb> filtered(std::size_t k) const;
+  // (height, width) of the same paths without filter.
+  [[nodiscard]] std::vector<Rgb> unfiltered() const;
+
+  // Radii that lie together: what one thread adds to.
+  static constexpr std::size_t kTogether = 8;
+
+  // Bytes a pixel for so many radii.
+  [[nodiscard]] static constexpr std::uint64_t bytes_of_sums(std::size_t radii) {
+    return 3 * sizeof(double) * ((radii + kTogether - 1) / kTogether * kTogether + 2) +
+           2 * sizeof(std::uint64_t);
+  }
+
+  // Adds record i of a block, but for c_bar, which add_filtered() does.
+  void add_record(const filter::Records& records, filter::Role role, std::size_t i);
+  // alpha c_bar of radii [begin, begin + count), of one kTogether, for record i; c_bar[k] of radius
+  // begin + k. A bit for each that overflows: it is left out.
+  std::uint32_t add_filtered(const filter::Records& records, std::size_t i, std::size_t begin,
+                             std::size_t count, const Rgb* c_bar);
+  // Takes back what add_record() added of record i, for radius k alone.
+  void leave_out(const filter::Records& records, std::size_t i, std::size_t k);
+
+ private:
+  struct Missing {
+    std::uint64_t paths = 0;
+    double u[3] = {};
+  };
+
+  [[nodiscard]] const double* filtered_sum(std::size_t pixel, std::size_t k) const {
+    const std::size_t group = k / kTogether;
+    return &filtered_[((group * paths_.size() + pixel) * kTogether + k % kTogether) * 3];
+  }
+
+  std::vector<double> filtered_;      // (groups of radii, pixels, kTogether, 3) of alpha c_bar
+  std::vector<double> u_;             // (pixels, 3)
+  std::vector<std::uint64_t> paths_;  // of a pixel
+  film::Film input_;
+  std::map<std::pair<std::uint32_t, std::size_t>, Missing> missing_;  // by pixel and radius
+};
+
+// Adds a slab to the pictures of its cameras, threads sharing the radii: the same sums for any
+// number of threads. Returns how many paths overflowed, over all radii.
+[[nodiscard]] std::uint64_t add_slab(const filter::Records& records, const filter::Slab& slab,
+                                     std::span<ManyPictures> pictures);
+
+}  // namespace psf::study

@@ -1,0 +1,44 @@
+// Bias and variance of a picture apart, from independent replicates of it.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace psf::study {
+
+struct Interval {
+  double low = std::numeric_limits<double>::quiet_NaN();
+  double high = std::numeric_limits<double>::quiet_NaN();
+};
+
+// Parts of relMSE: squares over r^2 + epsilon, r the reference, means over pixels and channels.
+// Expected values: error = bias_sq + variance. `bias_sq` is estimated without bias, so it may be
+// below 0 where it is small; the reference's own error is in it.
+struct ErrorParts {
+  double error = std::numeric_limits<double>::quiet_NaN();  // of one replicate, the mean over all
+  // Of at least two replicates, else NaN; 95% intervals by the jackknife, of at least three.
+  double bias_sq = std::numeric_limits<double>::quiet_NaN();
+  double variance = std::numeric_limits<double>::quiet_NaN();
+  Interval bias_sq_interval, variance_interval;
+};
+
+// A part of the picture: pixels [x, x + width) x [y, y + height).
+struct Rectangle {
+  std::size_t x = 0, y = 0, width = 0, height = 0;
+};
+
+// `replicates`: pictures of the reference's size, (height, width); `width` of them. Only pixels of
+// `region`, all where it is empty, that are finite in every replicate and in the reference count.
+// The same bits for any number of threads.
+[[nodiscard]] ErrorParts decompose(std::span<const std::vector<Rgb>> replicates,
+                                   std::span<const Rgb> reference, std::size_t width,
+                                   double epsilon, const Rectangle& region = {});
+
+// The 97.5% quantile of Student's t.
+[[nodiscard]] double student_t(std::size_t degrees_of_freedom);
+
+}  // namespace psf::study

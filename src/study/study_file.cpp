@@ -1,0 +1,88 @@
+#include "study/study_file.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "core/error.h"
+#include "filter/parameters_text.h"
+#include "formats/crc.h"
+
+namespace psf::study {
+
+Json number_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json describe_input(const Dump& dump, const PassSelection& passes, std::size_t camera) {
+  const formats::Metadata& metadata = dump.metadata();
+  const std::size_t last = last_pass(dump, passes);
+  const filter::CameraView& view = dump.cameras()[camera];
+  return {{"file", dump.reader().path()},
+          {"uuid", dump.reader().uuid()},
+          {"scene", metadata.scene},
+          {"integrator", metadata.integrator},
+          {"sampler", metadata.sampler},
+          {"seed", metadata.seed},
+          {"first_pass", passes.first},
+          {"passes", last - passes.first},
+          {"records", dump.pass_bounds()[last] - dump.pass_bounds()[passes.first]},
+          {"width", view.width},
+          {"height", view.height},
+          {"camera", metadata.cameras[camera].name}};
+}
+
+Json describe_reference(const std::string& file, std::span<const Rgb> picture) {
+  return {{"file", file},
+          {"crc32", fmt::format("{:08x}", formats::crc32(std::as_bytes(picture)))},
+          {"picture", nullptr}};
+}
+
+Json describe_metrics(std::span<const Metric> metrics, const MetricOptions& options) {
+  Json list = Json::array();
+  for (const Metric metric : metrics) {
+    Json one = {{"name", name(metric)}, {"lower_is_better", lower_is_better(metric)}};
+    const std::string depends_on = settings(metric, options);
+    if (!depends_on.empty()) one["settings"] = depends_on;
+    list.push_back(one);
+  }
+  return list;
+}
+
+Json to_json(const Metrics& metrics, std::span<const Metric> asked) {
+  Json json = Json::object();
+  for (const Metric metric : asked) json[name(metric)] = number_or_null(metrics[metric]);
+  return json;
+}
+
+Json to_json(const filter::Parameters& parameters) {
+  Json json = Json::object();
+  for (const auto& [option, value] : filter::describe(parameters)) json[option] = value;
+  return json;
+}
+
+std::string csv_cell(const Json& value) {
+  if (value.is_null()) return "";
+  if (!value.is_string()) return value.dump();
+  std::string text = value.get<std::string>();
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+Json read_study_file(const std::string& path, const std::string& kind) {
+  std::ifstream file(path);
+  if (!file) throw Error(ErrorCode::io, path + ": cannot be read");
+  const Json json = Json::parse(file, nullptr, false);
+  const auto refuse = [&path](const std::string& why) {
+    return Error(ErrorCode::bad_input, fmt::format("{}: {}; write into another folder", path, why));
+  };
+  if (json.is_discarded() || !json.is_object()) throw refuse("is no JSON of ours");
+  if (json.value("kind", "") != kind) throw refuse("is no " + kind);
+  if (json.value("format", 0) != kStudyFormat) throw refuse("is of another version of psf");
+  return json;
+}
+
+}  // namespace psf::study

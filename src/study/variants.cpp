@@ -1,0 +1,36 @@
+#include "study/variants.h"
+
+#include <map>
+#include <string>
+#include <utility>
+
+#include "filter/parameters_text.h"
+
+namespace psf::study {
+namespace {
+
+// Everything but r0 and delta.
+using Key = std::pair<filter::RadiusBasis, std::vector<std::pair<std::string, std::string>>>;
+
+Key key_of(filter::Parameters parameters) {
+  const filter::RadiusBasis basis = parameters.radius.basis;
+  parameters.radius.r0 = 1;
+  parameters.radius.delta = 0;
+  return {basis, filter::describe(parameters)};
+}
+
+}  // namespace
+
+std::vector<VariantGroup> group_variants(std::span<const filter::Parameters> sets) {
+  std::vector<VariantGroup> groups;
+  std::map<Key, std::size_t> places;
+  for (std::size_t row = 0; row < sets.size(); ++row) {
+    const auto [place, is_new] = places.try_emplace(key_of(sets[row]), groups.size());
+    if (is_new) groups.push_back({sets[row], {}, {}});
+    groups[place->second].radii.push_back(sets[row].radius);
+    groups[place->second].rows.push_back(row);
+  }
+  return groups;
+}
+
+}  // namespace psf::study

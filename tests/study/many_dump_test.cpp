@@ -1,0 +1,153 @@
+// A dump filtered for many radii at once is what separate runs give, on the way and at the end.
+#include "study/many_dump.h"
+
+#include "catch.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "filter_dump_setup.h"
+
+namespace psf {
+namespace {
+
+using namespace tests;  // NOLINT: the set-up that these tests share
+
+std::vector<filter::Radius> pairs() {
+  std::vector<filter::Radius> radii;
+  for (const double r0 : {0.05, 0.1, 0.25, 0.4}) {
+    for (const double delta : {0.0, 0.25, 0.5}) {
+      radii.push_back({r0, filter::RadiusBasis::distance, delta});
+    }
+  }
+  return radii;
+}
+
+study::ManyRun many_run(const std::string& block) {
+  study::ManyRun run;
+  run.parameters = default_run(block).parameters;
+  run.radii = pairs();
+  return run;
+}
+
+double largest_difference(const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
+  REQUIRE(a.size() == b.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      const double scale = std::max(1e-6, std::abs(double{b[i][c]}));
+      largest = std::max(largest, std::abs(double{a[i][c]} - double{b[i][c]}) / scale);
+    }
+  }
+  return largest;
+}
+
+// Compares with filter_dump() over the first `passes` passes.
+void check(const std::string& path, const study::ManyRun& run, const study::ManyOutcome& outcome,
+           std::uint64_t passes) {
+  for (std::size_t k = 0; k < run.radii.size(); ++k) {
+    FilterRun separate;
+    separate.parameters = run.parameters;
+    separate.parameters.radius = run.radii[k];
+    separate.passes = run.passes;
+    separate.passes.last = run.passes.first + passes;
+    const study::FilterOutcome expected = study::filter_dump(study::Dump(path), separate);
+    INFO("radius " << k << ", " << passes << " passes");
+    CHECK(outcome.statistics[k].accepted == expected.statistics.accepted);
+    CHECK(outcome.statistics[k].orphans == expected.statistics.orphans);
+    CHECK(outcome.blocks == expected.blocks);
+    for (std::size_t camera = 0; camera < expected.pictures.size(); ++camera) {
+      const film::Image image = expected.pictures[camera].image();
+      CHECK(largest_difference(outcome.pictures[camera].filtered(k), image.rgb()) < 1e-5);
+      CHECK(largest_difference(outcome.pictures[camera].unfiltered(),
+                               image.rgb("unfiltered-input.")) < 1e-5);
+    }
+  }
+}
+
+TEST_CASE("Many radii on a dump equal separate runs, at every number of passes") {
+  const TempFolder folder;
+  const std::string path = folder / "a.pvb";
+  RecordSet set = random_records(1500, 4, 0.2, kTwo);
+  set.contribution[77].x = std::numeric_limits<float>::infinity();
+  write_dump(path, set, {kTwo, {200, 250, 150, 200, 400, 100, 200}, {}});
+  const study::Dump dump(path);
+  for (const std::string block : {"1pass", "2passes", "4passes", "2^8", "all"}) {
+    INFO("blocks of " << block);
+    study::ManyRun run = many_run(block);
+    run.snapshots = {1, 2, 3, 4, 7};
+    std::vector<std::uint64_t> seen;
+    run.on_snapshot = [&](std::uint64_t n, const study::ManyOutcome& outcome) {
+      seen.push_back(n);
+      check(path, run, outcome, n);
+    };
+    const study::ManyOutcome outcome = study::filter_many(dump, run);
+    CHECK(seen == run.snapshots);
+    check(path, run, outcome, 7);
+  }
+}
+
+TEST_CASE("Many radii on chosen passes equal separate runs") {
+  const TempFolder folder;
+  const std::string path = folder / "a.pvb";
+  write_dump(path, random_records(900, 5, 0.2, kOne), {kOne, {200, 300, 200, 200}, {}});
+  study::ManyRun run = many_run("2passes");
+  run.passes = {1, {}};
+  check(path, run, study::filter_many(study::Dump(path), run), 3);
+}
+
+TEST_CASE("A path that overflows is left out of its radius alone") {
+  const TempFolder folder;
+  const std::string path = folder / "a.pvb";
+  RecordSet set = random_records(400, 6, 0, kOne);
+  for (std::size_t i = 0; i < 400; i += 50) set.contribution[i] = Rgb(1e30f, 1, 1);
+  for (std::size_t i = 0; i < 400; i += 9) set.throughput[i] = Rgb(1e10f, 1, 1);
+  write_dump(path, set, {kOne, {200, 200}, {}});
+  const study::ManyRun run = many_run("1pass");
+  const study::ManyOutcome outcome = study::filter_many(study::Dump(path), run);
+  std::uint64_t expected = 0;
+  for (std::size_t k = 0; k < run.radii.size(); ++k) {
+    FilterRun separate = default_run();
+    separate.parameters.radius = run.radii[k];
+    const study::FilterOutcome one = study::filter_dump(study::Dump(path), separate);
+    expected += one.overflows;
+    CHECK(largest_difference(outcome.pictures[0].filtered(k), one.pictures[0].image().rgb()) <
+          1e-5);
+  }
+  CHECK(expected > 0);
+  CHECK(outcome.overflows == expected);
+}
+
+TEST_CASE("Many radii on a dump give the same bytes for any number of threads") {
+  const TempFolder folder;
+  const std::string path = folder / "a.pvb";
+  write_dump(path, random_records(4000, 7, 0.1, kOne), {kOne, {2000, 2000}, {}});
+  const auto pictures = [&](std::size_t threads) {
+    const core::ThreadLimit limit(threads);
+    const study::ManyOutcome outcome = study::filter_many(study::Dump(path), many_run("1pass"));
+    std::vector<std::vector<Rgb>> all;
+    for (std::size_t k = 0; k < pairs().size(); ++k) {
+      all.push_back(outcome.pictures[0].filtered(k));
+    }
+    return all;
+  };
+  CHECK(pictures(1) == pictures(3));
+}
+
+TEST_CASE("Fewer radii at once where the memory does not allow all") {
+  const TempFolder folder;
+  const std::string path = folder / "a.pvb";
+  write_dump(path, random_records(400, 8, 0, {{1000, 1000, 0.001}}),
+             {{{1000, 1000, 0.001}}, {200, 200}, {}});
+  const study::Dump dump(path);
+  study::ManyRun run = many_run("1pass");
+  CHECK(study::radii_at_once(dump, run) == run.radii.size());
+  run.max_memory = std::uint64_t{600} << 20;
+  const std::size_t some = study::radii_at_once(dump, run);
+  CHECK(some < run.radii.size());
+  run.radii.resize(some);
+  CHECK(study::filter_many(dump, run).memory.total() <= *run.max_memory);
+  run.radii = pairs();
+  CHECK_THROWS_AS(study::filter_many(dump, run), Error);
+}
+
+}  // namespace
+}  // namespace psf

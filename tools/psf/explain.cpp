@@ -1,0 +1,130 @@
+// psf explain: why a pixel of the filtered picture is what it is.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cli.h"
+#include "core/error.h"
+#include "core/output_file.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "explain_report.h"
+#include "filter_options.h"
+#include "option_values.h"
+#include "pass_range.h"
+#include "study/explain_ply.h"
+#include "verbs.h"
+
+namespace psf::tools {
+namespace {
+
+constexpr std::size_t kProgressSteps = 1000;
+
+struct ExplainOptions : ParameterOptions {
+  CommonOptions common;
+  std::string input, passes, pixel, camera, ply;
+  std::optional<std::uint64_t> path;
+  std::size_t top = 5;
+  bool all = false;
+};
+
+std::size_t camera_of(const ExplainOptions& options, const study::Dump& dump) {
+  const auto& cameras = dump.metadata().cameras;
+  std::string names;
+  for (std::size_t k = 0; k < cameras.size(); ++k) {
+    if (cameras[k].name == options.camera) return k;
+    names += (names.empty() ? "" : ", ") + cameras[k].name;
+  }
+  if (options.camera.empty() && (cameras.size() == 1 || options.path)) return 0;
+  throw Error(ErrorCode::usage,
+              options.camera.empty()
+                  ? fmt::format("{}: has several cameras; say which with --camera: {}",
+                                options.input, names)
+                  : fmt::format("--camera: {} has no camera \"{}\", but {}", options.input,
+                                options.camera, names));
+}
+
+study::ExplainRequest request_of(const ExplainOptions& options) {
+  if (options.pixel.empty() == !options.path.has_value()) {
+    throw Error(ErrorCode::usage, "say what to explain: --pixel X,Y or --path I");
+  }
+  study::ExplainRequest request;
+  request.parameters = parameters_of(options);
+  request.passes = parse_passes(options.passes);
+  request.path = options.path;
+  if (options.path) return request;
+  const std::size_t comma = std::min(options.pixel.find(','), options.pixel.size());
+  const std::string_view text = options.pixel;
+  const auto x = parse_number<std::uint32_t>(text.substr(0, comma)),
+             y = parse_number<std::uint32_t>(text.substr(std::min(comma + 1, text.size())));
+  if (!x || !y) {
+    throw Error(ErrorCode::usage,
+                fmt::format("--pixel: '{}' is no pixel: write X,Y, 0,0 at the top left", text));
+  }
+  request.x = *x;
+  request.y = *y;
+  return request;
+}
+
+void run(const ExplainOptions& options) {
+  const core::ThreadLimit threads(options.common.threads);
+  study::ExplainRequest request = request_of(options);
+  if (!options.common.json.empty()) core::OutputFile probe(options.common.json);
+  if (!options.ply.empty()) core::OutputFile probe(options.ply);
+  const study::Dump dump(options.input);
+  request.camera = camera_of(options, dump);
+
+  core::Progress bar("explain", kProgressSteps, options.common.quiet);
+  request.on_progress = [&bar](std::uint64_t done, std::uint64_t total) {
+    bar.advance(static_cast<std::size_t>(1.0 * kProgressSteps * static_cast<double>(done) /
+                                         static_cast<double>(total)));
+  };
+  const study::Explanation explanation = study::explain(dump, request);
+  bar.finish();
+  const study::Whence whence = study::whence(explanation);
+  const ExplainReport report{dump, explanation, whence,
+                             options.all ? std::numeric_limits<std::size_t>::max() : options.top,
+                             options.all};
+  fmt::print("{}{}", explain_overview(report), explain_tables(report));
+  if (!options.common.json.empty()) {
+    core::write_text_file(options.common.json, explain_json(report).dump() + "\n");
+  }
+  if (!options.ply.empty()) static_cast<void>(study::write_ply(explanation, whence, options.ply));
+}
+
+}  // namespace
+
+void add_explain(CLI::App& app) {
+  auto shared = std::make_shared<ExplainOptions>();
+  ExplainOptions& options = *shared;
+  CLI::App* command =
+      app.add_subcommand("explain", "say why a pixel of the filtered picture is what it is");
+  command->add_option("IN", options.input, "path-vertex buffer")->required()->type_name("FILE.pvb");
+  command->add_option("--pixel", options.pixel, "the pixel, 0,0 at the top left")
+      ->type_name("X,Y")
+      ->excludes(command
+                     ->add_option("--path", options.path,
+                                  "this one path instead, by its number in the dump")
+                     ->type_name("I"));
+  command->add_option("--camera", options.camera, "of a dump of several: the pixel is this one's")
+      ->type_name("NAME");
+  command->add_option("--passes", options.passes, kPassesHelp)->type_name("FIRST:LAST");
+  command->add_option("--top", options.top, "rows of each table")->capture_default_str();
+  command->add_flag("--all", options.all, "all rows, and every path's vertex")->excludes("--top");
+  command
+      ->add_option("--ply", options.ply,
+                   "write the vertices that play a part as a point cloud: the pixel's own red, "
+                   "averaged ones from grey to white by their share, refused ones by the term")
+      ->type_name("FILE.ply");
+  add_parameter_options(*command, options);
+  add_common(*command, options.common);
+  wrap_descriptions(*command);
+  set_example(*command, "psf explain scene.pvb --pixel 120,88 --visibility=off --ply pixel.ply");
+  command->callback([shared] { run(*shared); });
+}
+
+}  // namespace psf::tools

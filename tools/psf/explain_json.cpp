@@ -1,0 +1,226 @@
+// An explained pixel as JSON.
+#include <cmath>
+
+#include "explain_words.h"
+#include "filter/parameters_text.h"
+#include "filter/weights.h"
+
+namespace psf::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// What is no number is null, as JSON wants it; an infinite hit distance is a miss.
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+template <typename V>
+Json triple(const V& v) {
+  return Json::array({number(static_cast<double>(v.x)), number(static_cast<double>(v.y)),
+                      number(static_cast<double>(v.z))});
+}
+Json number(const std::optional<double>& value) {
+  return value ? number(*value) : Json(nullptr);
+}
+
+class Writer {
+ public:
+  explicit Writer(const ExplainReport& report) : report_(report), e_(report.explanation) {}
+
+  [[nodiscard]] Json all() const {
+    const study::ExplainRequest& request = e_.request;
+    const study::Whence& w = report_.whence;
+    Json json = {{"input", report_.dump.reader().path()}, {"uuid", report_.dump.reader().uuid()}};
+    for (const auto& [name, value] : filter::describe(request.parameters)) {
+      json["parameters"][name] = value;
+    }
+    if (request.path) {
+      json["path"] = *request.path;
+    } else {
+      json["camera"] = report_.dump.metadata().cameras[request.camera].name;
+      json["pixel"] = {request.x, request.y};
+    }
+    json["passes"] = e_.passes;
+    json["blocks"] = e_.blocks;
+    json["value"] = value(w.pixel);
+    json["candidates"] = w.candidates;
+    json["refusals"] = Json::array();
+    for (const study::TermRefusals& of : w.refusals) {
+      json["refusals"].push_back({{"term", filter::kTermNames[of.term]},
+                                  {"refused", of.refused},
+                                  {"alone", of.alone},
+                                  {"pixel_without", triple(of.without)}});
+    }
+    json["leak"] = {{"sources", w.leak}, {"pairs", w.leak_pairs}, {"other_pairs", w.other_pairs}};
+    json["remedies"] = remedies();
+    json["kinds"] = kinds();
+    json["pixels"] = pixels();
+    json["sources"] = sources();
+    json["paths"] = Json::array();
+    for (std::size_t p = 0; p < e_.paths.size(); ++p) json["paths"].push_back(path(p));
+    return json;
+  }
+
+ private:
+  [[nodiscard]] Json value(const study::PixelSums& pixel) const {
+    const bool own = pixel.own.has_value();
+    return {
+        {"paths", pixel.paths},
+        {"filtered", triple(pixel.filtered)},
+        {"own_paths", pixel.own_paths},
+        {"own", own ? triple(*pixel.own) : Json(nullptr)},
+        {"own_luminance_error", own ? Json(pixel.own_error) : Json(nullptr)},
+        {"brightest_path", own ? Json(record(e_.paths[pixel.brightest].vertex)) : Json(nullptr)},
+        {"brightest_share", pixel.brightest_share},
+        {"own_contribution", triple(pixel.baseline)},
+        {"difference", triple(pixel.difference)}};
+  }
+
+  [[nodiscard]] Json remedies() const {
+    Json list = Json::array();
+    for (const study::Remedy& remedy : report_.whence.remedies) {
+      list.push_back({{"term", filter::kTermNames[remedy.term]},
+                      {"threshold", remedy.threshold ? Json(*remedy.threshold) : Json(nullptr)},
+                      {"refuses_of_leak", remedy.leaking},
+                      {"refuses_of_others", remedy.others},
+                      {"pixel", triple(remedy.pixel)}});
+    }
+    return list;
+  }
+
+  [[nodiscard]] Json kinds() const {
+    Json list = Json::array();
+    for (const study::KindShare& kind : report_.whence.kinds) {
+      list.push_back({{"apart_by", names(kind.terms)},
+                      {"pairs", kind.pairs},
+                      {"of_leak", kind.leaking},
+                      {"excess", triple(kind.excess)}});
+    }
+    return list;
+  }
+
+  [[nodiscard]] Json pixels() const {
+    Json list = Json::array();
+    for (const study::PixelShare& pixel : report_.whence.pixels) {
+      const std::uint32_t width = e_.widths[pixel.camera];
+      list.push_back({{"camera", pixel.camera},
+                      {"pixel", {pixel.pixel % width, pixel.pixel / width}},
+                      {"sources", pixel.sources},
+                      {"pairs", pixel.pairs},
+                      {"of_leak", pixel.leaking},
+                      {"share", triple(pixel.share)},
+                      {"excess", triple(pixel.excess)},
+                      {"angle", pixel.angle},
+                      {"reflectance", pixel.reflectance},
+                      {"lights", pixel.lights},
+                      {"plane", pixel.plane},
+                      {"material", pixel.material}});
+    }
+    return list;
+  }
+
+  [[nodiscard]] Json sources() const {
+    Json list = Json::array();
+    for (std::size_t k = 0; k < report_.whence.sources.size(); ++k) {
+      const study::SourceShare& source = report_.whence.sources[k];
+      Json row = vertex(source.vertex);
+      row["leak"] = k < report_.whence.leak;
+      row["paths"] = source.paths;
+      row["share"] = triple(source.share);
+      row["excess"] = triple(source.excess);
+      row["apart"] = apart(source.pair);
+      list.push_back(row);
+    }
+    return list;
+  }
+
+  [[nodiscard]] Json apart(std::size_t pair) const {
+    const study::PairFeatures f = study::features_of(e_, e_.pairs[pair]);
+    return {{"angle", number(f.angle)},
+            {"reflectance", number(f.reflectance)},
+            {"lights", f.lights ? Json(*f.lights) : Json(nullptr)},
+            {"hit_distance", number(f.hit_distance)},
+            {"plane", number(f.plane)},
+            {"direction", number(f.direction)},
+            {"material", f.material ? Json(*f.material) : Json(nullptr)}};
+  }
+
+  [[nodiscard]] std::uint64_t record(std::uint32_t v) const { return e_.record[v]; }
+  [[nodiscard]] Json pixel(std::uint32_t v) const {
+    const auto [x, y] = pixel_of(e_, v);
+    return Json::array({x, y});
+  }
+  static Json names(std::uint32_t bits) {
+    Json list = Json::array();
+    for (std::size_t k = 0; k < filter::kTermCount; ++k) {
+      if (((bits >> k) & 1) != 0) list.push_back(filter::kTermNames[k]);
+    }
+    return list;
+  }
+
+  // A record with all the channels that were read.
+  [[nodiscard]] Json vertex(std::uint32_t i) const {
+    const study::BlockRecords& v = e_.vertices;
+    Json row = {{"record", record(i)}, {"pass", e_.pass[i]}, {"pixel", pixel(i)}};
+    const auto put = [&row, i](const char* name, const auto& column, auto make) {
+      if (!column.empty()) row[name] = make(column[i]);
+    };
+    const auto as_is = [](auto n) { return Json(n); };
+    const auto real = [](float n) { return number(double{n}); };
+    const auto vec = [](const Vec3& n) { return triple(n); };
+    put("camera", v.camera, as_is);
+    put("position", v.position, vec);
+    put("normal", v.normal, vec);
+    put("reflectance", v.reflectance, vec);
+    put("distance", v.distance, real);
+    put("throughput", v.throughput, vec);
+    put("contribution", v.contribution, vec);
+    put("unfiltered", v.unfiltered, vec);
+    put("visibility", v.visibility, as_is);
+    put("hit_distance", v.hit_distance, real);
+    put("direction", v.direction, vec);
+    put("material", v.material, as_is);
+    return row;
+  }
+
+  [[nodiscard]] Json path(std::size_t p) const {
+    const study::ExplainedPath& of = e_.paths[p];
+    Json row = vertex(of.vertex);
+    row["fate"] = kFateNames[static_cast<std::size_t>(of.fate)];
+    row["radius"] = number(double{of.radius});
+    row["c_bar"] = triple(of.c_bar);
+    row["averaged"] = of.neighbors;
+    row["in_ball"] = of.in_ball;
+    Json& n = row["neighbors"];
+    for (const char* column : {"record", "pass", "pixel", "distance", "contribution", "share",
+                               "averaged", "in_ball", "refused_by"}) {
+      n[column] = Json::array();
+    }
+    for (std::size_t k = of.begin; k < of.end; ++k) {
+      const study::ExplainedPair& pair = e_.pairs[k];
+      n["record"].push_back(record(pair.vertex));
+      n["pass"].push_back(e_.pass[pair.vertex]);
+      n["pixel"].push_back(pixel(pair.vertex));
+      n["distance"].push_back(pair.distance);
+      n["contribution"].push_back(triple(e_.vertices.contribution[pair.vertex]));
+      n["share"].push_back(pair.averaged
+                               ? triple(study::share_of(e_, pair, report_.whence.pixel.paths))
+                               : triple(study::Colour(0, 0, 0)));
+      n["averaged"].push_back(pair.averaged);
+      n["in_ball"].push_back(pair.in_ball);
+      n["refused_by"].push_back(pair.refusers);
+    }
+    return row;
+  }
+
+  const ExplainReport& report_;
+  const study::Explanation& e_;
+};
+
+}  // namespace
+
+nlohmann::ordered_json explain_json(const ExplainReport& report) {
+  return Writer(report).all();
+}
+
+}  // namespace psf::tools

@@ -1,0 +1,207 @@
+// The head of psf explain's text: the pixel, its vertices, and what it is against its own paths.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <set>
+#include <vector>
+
+#include "explain_words.h"
+#include "filter/parameters_text.h"
+#include "search/ball.h"
+#include "text.h"
+
+namespace psf::tools {
+namespace {
+
+using study::Colour;
+using study::luminance;
+
+// A firefly is worth a word from here on.
+constexpr double kDominates = 0.2;
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  void add(float value) {
+    low = std::min(low, double{value});
+    high = std::max(high, double{value});
+  }
+  [[nodiscard]] std::string text() const {
+    return low == high ? fmt::format("{:.4g}", low) : fmt::format("{:.4g} to {:.4g}", low, high);
+  }
+};
+
+std::string colour(const Colour& c) {
+  return fmt::format("{:.4g} {:.4g} {:.4g}, luminance {:.4g}", c.x, c.y, c.z, luminance(c));
+}
+
+class Overview {
+ public:
+  explicit Overview(const ExplainReport& report)
+      : report_(report), e_(report.explanation), v_(e_.vertices) {}
+
+  std::string run() {
+    const std::uint32_t first = e_.paths.front().vertex;
+    const auto [x, y] = pixel_of(e_, first);
+    const auto& cameras = report_.dump.metadata().cameras;
+    text_ = fmt::format("{}: {}pixel {},{} of camera \"{}\"\n", report_.dump.reader().path(),
+                        e_.request.path ? fmt::format("path {}, ", *e_.request.path) : "", x, y,
+                        cameras[v_.camera.empty() ? 0 : v_.camera[first]].name);
+    paths();
+    for (const study::ExplainedPath& path : e_.paths) {
+      if (has_vertex(path)) own_.push_back(&path);
+    }
+    if (own_.empty()) {
+      line("vertices", "none: nothing is averaged");
+    } else {
+      vertices();
+      surfaces();
+      balls();
+    }
+    values();
+    return std::move(text_);
+  }
+
+ private:
+  void line(const char* name, const std::string& value) {
+    text_ += fmt::format("{:<10} {}\n", name, value);
+  }
+
+  void paths() {
+    std::array<std::uint64_t, std::size(kFateNames)> fates{};
+    for (const auto& path : e_.paths) ++fates[static_cast<std::size_t>(path.fate)];
+    std::string list;
+    for (std::size_t k = 0; k < fates.size(); ++k) {
+      if (fates[k] == 0) continue;
+      list +=
+          fmt::format("{}{} {}", list.empty() ? "" : ", ", with_commas(fates[k]), kFateNames[k]);
+    }
+    line("paths", fmt::format("{}, from {} of the {}: {}", with_commas(e_.paths.size()),
+                              counted(e_.blocks, "block", "blocks"),
+                              counted(e_.passes, "pass", "passes"), list));
+  }
+
+  void vertices() {
+    Vec3 low = v_.position[own_[0]->vertex], high = low;
+    Range distance;
+    for (const study::ExplainedPath* path : own_) {
+      const Vec3& x = v_.position[path->vertex];
+      for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], x[axis]);
+        high[axis] = std::max(high[axis], x[axis]);
+      }
+      if (!v_.distance.empty()) distance.add(v_.distance[path->vertex]);
+    }
+    std::string text = point(low);
+    if (low != high) text += " to " + point(high);
+    if (!v_.distance.empty()) text += fmt::format(", {} from the camera", distance.text());
+    line("vertices", text);
+  }
+
+  // What the vertices have in common, and how far they differ.
+  void surfaces() {
+    const std::uint32_t first = own_[0]->vertex;
+    double cosine = 1, reflectance = 0;
+    std::set<std::uint32_t> materials, lights;
+    for (const study::ExplainedPath* path : own_) {
+      const std::uint32_t i = path->vertex;
+      if (!v_.normal.empty()) {
+        cosine = std::min(cosine, double{dot(v_.normal[first], v_.normal[i])});
+      }
+      if (!v_.reflectance.empty()) {
+        const float d_sq = search::distance_sq(v_.reflectance[first], v_.reflectance[i]);
+        reflectance = std::max(reflectance, std::sqrt(double{d_sq}));
+      }
+      if (!v_.material.empty()) materials.insert(v_.material[i]);
+      if (!v_.visibility.empty()) lights.insert(v_.visibility[i]);
+    }
+    if (!v_.normal.empty()) {
+      const double angle = std::acos(std::max(cosine, -1.0)) * 180 / std::numbers::pi;
+      line("normal",
+           point(v_.normal[first]) +
+               (angle < 0.05 ? "" : fmt::format(", others off by {:.1f} degrees", angle)));
+    }
+    if (!v_.reflectance.empty()) {
+      line("albedo",
+           point(v_.reflectance[first]) +
+               (reflectance < 5e-4 ? "" : fmt::format(", others off by {:.3f}", reflectance)));
+    }
+    if (!v_.material.empty()) line("material", fmt::format("{}", fmt::join(materials, ", ")));
+    if (!v_.visibility.empty()) line("lights", seen(lights));
+  }
+  [[nodiscard]] std::string seen(const std::set<std::uint32_t>& lights) const {
+    if (lights.size() > 2) return fmt::format("{} different sets are seen", lights.size());
+    std::string text;
+    for (const std::uint32_t bits : lights) {
+      const std::string names = lights_text(report_.dump, bits);
+      text += (text.empty() ? "" : ", or ") + (bits == 0 ? "none is seen" : names + " is seen");
+    }
+    return text;
+  }
+
+  void balls() {
+    Range radius;
+    double neighbors = 0, in_ball = 0;
+    for (const study::ExplainedPath* path : own_) {
+      radius.add(path->radius);
+      neighbors += path->neighbors;
+      in_ball += path->in_ball;
+    }
+    const filter::Parameters& parameters = e_.request.parameters;
+    line("radius", fmt::format("{}, {}, delta {:.4g}, block {}", radius.text(),
+                               filter::to_text(parameters.radius), parameters.radius.delta,
+                               filter::to_text(parameters.block)));
+    const auto n = static_cast<double>(own_.size());
+    line("neighbors",
+         fmt::format("mean {:.1f}, of {:.1f} in the ball", neighbors / n, in_ball / n));
+  }
+
+  void values() {
+    const study::PixelSums& pixel = report_.whence.pixel;
+    if (pixel.paths == 0) return line("filtered", "no path is part of it");
+    line("filtered", colour(pixel.filtered));
+    const auto& sources = report_.whence.sources;
+    if (pixel.own_paths == 0) return line("own paths", "none has a contribution to compare with");
+    line("own paths", colour(*pixel.own) +
+                          (pixel.own_paths > 1 ? fmt::format(" +- {:.2g}", pixel.own_error) : ""));
+    if (pixel.own_paths > 1 && pixel.brightest_share > 0.5) {
+      line("",
+           fmt::format("path {} alone is {:.0f}% of that",
+                       e_.record[e_.paths[pixel.brightest].vertex], 100 * pixel.brightest_share));
+    }
+    if (own_.empty()) return;
+    const double difference = luminance(pixel.difference), own = luminance(*pixel.own);
+    std::string text = fmt::format("{:+.4g}", difference);
+    if (own > 0) text += fmt::format(" ({:+.1f}%)", 100 * difference / own);
+    if (pixel.own_error > 0) {
+      const double errors = std::abs(difference) / pixel.own_error;
+      text += fmt::format(", {:.1f} standard errors of its own paths: {}", errors,
+                          errors < 2 ? "may be their noise" : "more than their noise");
+    }
+    line("difference", text);
+    const double filtered = luminance(pixel.filtered);
+    for (const study::SourceShare& source : sources) {
+      if (filtered > 0 && sources.size() > 1 && luminance(source.share) > kDominates * filtered) {
+        line("", fmt::format("source {} alone is {} of the filtered pixel",
+                             e_.record[source.vertex], percent(luminance(source.share), filtered)));
+      }
+    }
+  }
+
+  const ExplainReport& report_;
+  const study::Explanation& e_;
+  const study::BlockRecords& v_;
+  std::vector<const study::ExplainedPath*> own_;  // with a vertex
+  std::string text_;
+};
+
+}  // namespace
+
+std::string explain_overview(const ExplainReport& report) {
+  return Overview(report).run();
+}
+
+}  // namespace psf::tools

@@ -1,0 +1,228 @@
+// The tables of psf explain's text: refusals, whence the light came, remedies, paths.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "explain_words.h"
+#include "filter/parameters_text.h"
+#include "filter/weights.h"
+#include "text.h"
+
+namespace psf::tools {
+namespace {
+
+using study::luminance;
+
+// What tells a source from the vertex it is averaged into, by term.
+constexpr const char* kApart[] = {
+    "another normal",  "another reflectance", "other lights seen", "", "off the tangent plane", "",
+    "another material"};
+
+// A remedy is worth a row if it refuses so much more of the leak than of the others, in shares.
+constexpr double kWorthARow = 0.1, kTells = 0.25;
+
+class Tables {
+ public:
+  explicit Tables(const ExplainReport& report)
+      : report_(report), e_(report.explanation), w_(report.whence), v_(e_.vertices) {}
+
+  std::string run() {
+    if (!e_.pairs.empty()) {
+      refusals();
+      kinds();
+      remedies();
+      pixels();
+      sources();
+    }
+    paths();
+    return std::move(text_);
+  }
+
+ private:
+  template <typename... T>
+  void say(fmt::format_string<T...> format, T&&... values) {
+    fmt::format_to(std::back_inserter(text_), format, std::forward<T>(values)...);
+  }
+  [[nodiscard]] std::size_t shown(std::size_t rows) const { return std::min(rows, report_.top); }
+  void rest(std::size_t rows) {
+    if (rows > report_.top) say("  and {} more\n", with_commas(rows - report_.top));
+  }
+  // A value of a channel, or a dash where the file has none.
+  static std::string cell(const auto& column, int decimals, double value, const char* unit = "") {
+    return column.empty() ? "-" : fmt::format("{:.{}f}{}", value, decimals, unit);
+  }
+
+  void refusals() {
+    if (w_.refusals.empty()) {
+      return say("\nno weight is on: {} in the balls, all averaged\n",
+                 counted(w_.candidates, "pair", "pairs"));
+    }
+    say("\n{:<34}{:>12}{:>8}{:>12}{:>26}\n",
+        counted(w_.candidates, "pair", "pairs") + " in the balls", "refused", "", "it alone",
+        "luminance without it");
+    for (const study::TermRefusals& of : w_.refusals) {
+      say("  {:<32}{:>12}{:>8}{:>12}{:>26.4g}\n", term_text(of.term), with_commas(of.refused),
+          percent(of.refused, w_.candidates), with_commas(of.alone), luminance(of.without));
+    }
+  }
+  // As the run has it: "normal 0.95", "visibility".
+  [[nodiscard]] std::string term_text(std::size_t term) const {
+    for (const auto& [name, value] : filter::describe(e_.request.parameters)) {
+      if (name == filter::kTermNames[term]) return name + (value == "on" ? "" : " " + value);
+    }
+    return filter::kTermNames[term];
+  }
+
+  void kinds() {
+    if (w_.leak == 0) return;
+    const bool lower = luminance(w_.pixel.difference) < 0;
+    say("\n{} {}\n", counted(w_.sources.size(), "source is", "sources are"),
+        fmt::format("averaged; {} {} all of the difference", with_commas(w_.leak),
+                    w_.leak == 1 ? (lower ? "lowers the pixel by" : "raises the pixel by")
+                                 : (lower ? "lower the pixel by" : "raise the pixel by")));
+    if (w_.kinds.empty()) return;
+    say("  {:<44}{:>10}{:>12}{:>12}{:>14}\n", "told from the vertex by", "pairs", "of those",
+        "of others", "adds");
+    for (std::size_t k = 0; k < shown(w_.kinds.size()); ++k) {
+      const study::KindShare& kind = w_.kinds[k];
+      say("  {:<44}{:>10}{:>12}{:>12}{:>+14.4g}\n", kind_text(kind.terms), with_commas(kind.pairs),
+          percent(kind.leaking, w_.leak_pairs), percent(kind.pairs - kind.leaking, w_.other_pairs),
+          luminance(kind.excess));
+    }
+    rest(w_.kinds.size());
+  }
+  static std::string kind_text(std::uint32_t terms) {
+    std::string text;
+    for (std::size_t k = 0; k < filter::kTermCount; ++k) {
+      if (((terms >> k) & 1) != 0) text += (text.empty() ? "" : ", ") + std::string(kApart[k]);
+    }
+    return text.empty() ? "nothing" : text;
+  }
+
+  void remedies() {
+    if (w_.leak == 0 || w_.leak_pairs == 0) return;
+    bool told = false;
+    for (const study::Remedy& remedy : w_.remedies) {
+      const double gain = remedy.gain(w_.leak_pairs, w_.other_pairs);
+      if (gain < kWorthARow) continue;
+      if (!std::exchange(told, true)) {
+        say("\n{:<34}{:>20}{:>20}{:>20}\n", "would have refused", "of those", "of others",
+            "luminance with it");
+      }
+      const auto cost = [](std::uint64_t part, std::uint64_t all) {
+        return with_commas(part) + fmt::format("{:>8}", percent(part, all));
+      };
+      say("  {:<32}{:>20}{:>20}{:>20.4g}\n",
+          filter::kTermNames[remedy.term] +
+              (remedy.threshold ? fmt::format(" {:g}", *remedy.threshold) : ""),
+          cost(remedy.leaking, w_.leak_pairs), cost(remedy.others, w_.other_pairs),
+          luminance(remedy.pixel));
+    }
+    if (w_.remedies.empty() || w_.remedies.front().gain(w_.leak_pairs, w_.other_pairs) < kTells) {
+      say("\nno term tells those from the others: noise, or something that no weight looks at\n");
+    }
+  }
+
+  void pixels() {
+    say("\n{:<24}{:>9}{:>11}{:>11}{:>9}{:>9}{:>9}{:>10}{:>8}\n", "sources from pixel", "sources",
+        "of those", "adds", "angle", "albedo", "lights", "material", "plane");
+    const auto [x, y] = pixel_of(e_, e_.paths.front().vertex);
+    for (std::size_t k = 0; k < shown(w_.pixels.size()); ++k) {
+      const study::PixelShare& of = w_.pixels[k];
+      const std::uint32_t width = e_.widths[of.camera];
+      const std::uint32_t from_x = of.pixel % width, from_y = of.pixel / width;
+      std::string name = fmt::format("{},{}", from_x, from_y);
+      if (e_.widths.size() > 1)
+        name += " " + report_.dump.metadata().cameras[of.camera].name;
+      else if (from_x == x && from_y == y)
+        name += " itself";
+      say("  {:<22}{:>9}{:>11}{:>+11.3g}{:>9}{:>9}{:>9}{:>10}{:>8}\n", name,
+          with_commas(of.sources), percent(of.leaking, of.pairs), luminance(of.excess),
+          cell(v_.normal, 1, of.angle), cell(v_.reflectance, 3, of.reflectance),
+          cell(v_.visibility, 0, 100 * of.lights, "%"),
+          cell(v_.material, 0, 100 * of.material, "%"), cell(v_.normal, 2, of.plane));
+    }
+    rest(w_.pixels.size());
+  }
+
+  void sources() {
+    say("\n{:<12}{:>6}{:>10}{:>11}{:>8}{:>10}{:>8}{:>8}{:>9}{:>10}{:>8}\n", "source", "pass",
+        "pixel", "adds", "share", "distance", "angle", "albedo", "lights", "material", "plane");
+    for (std::size_t k = 0; k < shown(w_.sources.size()); ++k) {
+      const study::SourceShare& source = w_.sources[k];
+      const study::ExplainedPair& pair = e_.pairs[source.pair];
+      const study::PairFeatures f = study::features_of(e_, pair);
+      const auto [x, y] = pixel_of(e_, source.vertex);
+      say("  {:<10}{:>6}{:>10}{:>+11.3g}{:>8}{:>10.3g}{:>8}{:>8}{:>9}{:>10}{:>8}\n",
+          e_.record[source.vertex], e_.pass[source.vertex], fmt::format("{},{}", x, y),
+          luminance(source.excess), percent(luminance(source.share), luminance(w_.pixel.filtered)),
+          pair.distance, cell(v_.normal, 1, f.angle.value_or(0)),
+          cell(v_.reflectance, 3, f.reflectance.value_or(0)), lights(pair, f),
+          !f.material   ? "-"
+          : *f.material ? "other"
+                        : "same",
+          cell(v_.normal, 2, f.plane.value_or(0)));
+    }
+    rest(w_.sources.size());
+  }
+  // What the source sees and the vertex does not, or the other way round.
+  [[nodiscard]] std::string lights(const study::ExplainedPair& pair,
+                                   const study::PairFeatures& features) const {
+    if (!features.lights) return "-";
+    if (*features.lights == 0) return "same";
+    const std::uint32_t more = *features.lights & v_.visibility[pair.vertex];
+    const std::string text = more == *features.lights ? "+" + lights_text(report_.dump, more)
+                             : more == 0 ? "-" + lights_text(report_.dump, *features.lights)
+                                         : "other";
+    constexpr std::size_t kWidth = 8;
+    return text.size() <= kWidth ? text : "other";
+  }
+
+  void paths() {
+    say("\n{:<12}{:>6}{:>12}{:>11}{:>10}{:>11}{:>11}{:>11}{:>11}\n", "path", "pass", "radius",
+        "neighbors", "in ball", "alpha", "c", "c_bar", "u");
+    const auto light = [](const Rgb& c) { return fmt::format("{:.4g}", psf::luminance(c)); };
+    for (std::size_t p = 0; p < shown(e_.paths.size()); ++p) {
+      const study::ExplainedPath& path = e_.paths[p];
+      const std::uint32_t i = path.vertex;
+      const std::string u = v_.unfiltered.empty() ? "0" : light(v_.unfiltered[i]);
+      const char* fate = kFateNames[static_cast<std::size_t>(path.fate)];
+      if (!has_vertex(path)) {
+        say("  {:<10}{:>6}{:>23}{:>54}\n", e_.record[i], e_.pass[i], fate, u);
+        continue;
+      }
+      const bool averaged = path.fate == study::PathFate::averaged;
+      say("  {:<10}{:>6}{:>12.4g}{:>11}{:>10}{:>11}{:>11}{:>11}{:>11}\n", e_.record[i], e_.pass[i],
+          path.radius, averaged ? with_commas(path.neighbors) : fate, with_commas(path.in_ball),
+          light(v_.throughput[i]), e_.is_source[i] ? light(v_.contribution[i]) : "none",
+          light(path.c_bar), u);
+      if (report_.vertices) vertex(i, path);
+    }
+    rest(e_.paths.size());
+  }
+  void vertex(std::uint32_t i, const study::ExplainedPath& path) {
+    say("    x {}", point(v_.position[i]));
+    if (!v_.normal.empty()) say(" n {}", point(v_.normal[i]));
+    if (!v_.reflectance.empty()) say(" rho {}", point(v_.reflectance[i]));
+    say("\n    alpha {} c {} c_bar {}", point(v_.throughput[i]), point(v_.contribution[i]),
+        point(path.c_bar));
+    if (!v_.unfiltered.empty()) say(" u {}", point(v_.unfiltered[i]));
+    say("\n");
+  }
+
+  const ExplainReport& report_;
+  const study::Explanation& e_;
+  const study::Whence& w_;
+  const study::BlockRecords& v_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string explain_tables(const ExplainReport& report) {
+  return Tables(report).run();
+}
+
+}  // namespace psf::tools

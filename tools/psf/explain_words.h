@@ -1,0 +1,55 @@
+// Words and numbers that both halves of psf explain's text use.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "explain_report.h"
+
+namespace psf::tools {
+
+inline constexpr const char* kFateNames[] = {"averaged", "orphan", "without vertex", "left out",
+                                             "overflowed"};
+
+// 0 has no sign here.
+inline std::string point(const Vec3& v) {
+  return fmt::format("({:.4g}, {:.4g}, {:.4g})", v.x + 0, v.y + 0, v.z + 0);
+}
+
+inline std::string percent(double part, double all) {
+  return all == 0 ? "-" : fmt::format("{:.1f}%", 100 * part / all);
+}
+inline std::string percent(std::uint64_t part, std::uint64_t all) {
+  return percent(static_cast<double>(part), static_cast<double>(all));
+}
+
+inline bool has_vertex(const study::ExplainedPath& path) {
+  return path.fate != study::PathFate::no_vertex && path.fate != study::PathFate::left_out;
+}
+
+inline std::pair<std::uint32_t, std::uint32_t> pixel_of(const study::Explanation& explanation,
+                                                        std::uint32_t vertex) {
+  const study::BlockRecords& v = explanation.vertices;
+  const std::uint32_t width = explanation.widths[v.camera.empty() ? 0 : v.camera[vertex]];
+  return {v.pixel[vertex] % width, v.pixel[vertex] / width};
+}
+
+// Light l owns bit l mod 32. Text of a file may hold what a terminal obeys.
+inline std::string lights_text(const study::Dump& dump, std::uint32_t bits) {
+  std::string text;
+  const auto& names = dump.metadata().lights;
+  for (std::size_t bit = 0; bit < 32; ++bit) {
+    if (((bits >> bit) & 1) == 0) continue;
+    const bool one = bit < names.size() && bit + 32 >= names.size() && !names[bit].empty();
+    text += (text.empty() ? "" : "+") + (one ? names[bit] : fmt::format("{}", bit));
+  }
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7F'; }, '?');
+  return text;
+}
+
+}  // namespace psf::tools

@@ -1,0 +1,97 @@
+#include "study_folder.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <system_error>
+
+#include "film/image.h"
+#include "filter/parameters_text.h"
+#include "formats/error.h"
+#include "pass_range.h"
+#include "version.h"
+
+namespace psf::tools {
+
+void add_study_options(CLI::App& command, StudyOptions& options, bool required) {
+  command.add_option("--reference", options.reference, "what is right: an EXR of the same size")
+      ->required(required)
+      ->type_name("FILE.exr");
+  command.add_option("-o,--output", options.folder, "folder for the results; made where missing")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("--passes", options.passes, kPassesHelp)->type_name("FIRST:LAST");
+  command.add_option("--camera", options.camera, "which camera, where the dump has several")
+      ->type_name("NAME");
+  command.add_option("--metric", options.metric, "orders what is printed")->capture_default_str();
+  command
+      .add_option("--epsilon", options.metrics.epsilon,
+                  "of the relative metrics: guards dark places")
+      ->capture_default_str();
+  command.add_flag("--pictures", options.pictures, "also write every picture as EXR");
+  command
+      .add_option("--max-memory", options.max_memory,
+                  "what it may take, 500M or 4G: shares less, or refuses (default no limit)")
+      ->transform(CLI::AsSizeValue(false))
+      ->type_name("SIZE");
+}
+
+std::size_t find_camera(const study::Dump& dump, const std::string& name) {
+  const auto& cameras = dump.metadata().cameras;
+  if (name.empty() && cameras.size() == 1) return 0;
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < cameras.size(); ++k) {
+    if (!name.empty() && cameras[k].name == name) return k;
+    names.push_back(cameras[k].name);
+  }
+  throw Error(ErrorCode::usage,
+              fmt::format("{}: {}; give --camera one of: {}", dump.reader().path(),
+                          name.empty() ? "has several cameras" : "has no camera '" + name + "'",
+                          fmt::join(names, ", ")));
+}
+
+StudyFolder::StudyFolder(const StudyOptions& options, const study::Dump& dump)
+    : options_(options),
+      passes_(parse_passes(options.passes)),
+      metric_(study::parse_metric(options.metric)),
+      camera_(find_camera(dump, options.camera)) {
+  options_.metrics.validate();
+  const film::Image image = film::read_exr(options_.reference);
+  const filter::CameraView& view = dump.cameras()[camera_];
+  if (image.width != view.width || image.height != view.height) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: is {}x{}, the camera's picture in {} {}x{}; give a reference of "
+                            "its size",
+                            options_.reference, image.width, image.height, dump.reader().path(),
+                            view.width, view.height));
+  }
+  reference_ = image.rgb();
+  width_ = image.width;
+  height_ = image.height;
+  std::error_code error;
+  std::filesystem::create_directories(options_.folder, error);
+  if (!std::filesystem::is_directory(options_.folder)) {
+    throw Error(ErrorCode::io, fmt::format("{}: cannot be made as a folder: {}; give -o another",
+                                           options_.folder, error.message()));
+  }
+}
+
+void StudyFolder::write(const std::string& name, std::span<const Rgb> picture,
+                        const std::optional<filter::Parameters>& parameters) const {
+  film::Image image;
+  image.width = width_;
+  image.height = height_;
+  std::vector<float> values;
+  values.reserve(3 * picture.size());
+  for (const Rgb& value : picture) values.insert(values.end(), {value.x, value.y, value.z});
+  image.add("", "RGB", values);
+  image.attributes.emplace_back("psf:version", kVersion);
+  if (parameters) {
+    for (const auto& [option, value] : filter::describe(*parameters)) {
+      image.attributes.emplace_back("psf:" + option, value);
+    }
+  }
+  film::write_exr((std::filesystem::path(options_.folder) / name).string(), image);
+}
+
+}  // namespace psf::tools
