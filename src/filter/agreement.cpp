@@ -21,8 +21,8 @@ bool agrees(const Moments& ball, const Moments& larger, double agree) {
   const double inside = ball.count, all = larger.count, beyond = all - inside;
   const double mean = (all * larger.mean - inside * ball.mean) / beyond;
   const double mean_sq = (all * larger.mean_sq - inside * ball.mean_sq) / beyond;
-  const double error_sq = standard_error_sq(ball.mean, ball.mean_sq, inside) +
-                          standard_error_sq(mean, mean_sq, beyond);
+  const double error_sq =
+      standard_error_sq(ball.mean, ball.mean_sq, inside) + standard_error_sq(mean, mean_sq, beyond);
   const double rounding = kRounding * (std::abs(mean) + std::abs(ball.mean));
   // A not-a-number, of luminances whose squares overflow, agrees.
   return !(std::abs(mean - ball.mean) > agree * std::sqrt(error_sq) + rounding);

@@ -18,8 +18,8 @@ struct Average {
       roles;  // c_bar is there for `query` and `source`; `left_out` is no part of the picture
   std::vector<Rgb> c_bar;                // 0 elsewhere
   std::vector<std::uint32_t> neighbors;  // sources averaged; 0 for an orphan
-  std::vector<float> radius;             // that [adaptive] chose; empty: those that were given
   Statistics statistics;
+  std::vector<float> radius = {};  // that [adaptive] chose; empty: those that were given
 };
 
 // `radius`: r_i in world units, finite or infinite, >= 0 (radii() of radius.h). The channels that

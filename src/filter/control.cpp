@@ -88,7 +88,7 @@ class Control {
       counts.without_source = counts.queries;
       return;
     }
-    k_ = shade_rate(counts.queries, counts.sources) * p_.sources;
+    k_ = std::uint64_t{shade_rate(counts.queries, counts.sources)} * p_.sources;
     if (p_.sources == 1) return;
     std::vector<std::uint32_t> chosen;
     std::uint64_t pixels = 0;
@@ -109,7 +109,7 @@ class Control {
   // Of the noise of a control, what does not cancel among the records of a pixel, since the block
   // has not k_ passes for each of its sources.
   [[nodiscard]] double noise_share() const {
-    const double k = k_, passes = std::max(1.0, block_.samples_per_pixel);
+    const double k = static_cast<double>(k_), passes = std::max(1.0, block_.samples_per_pixel);
     const double rest = std::fmod(passes, k);
     return rest * (k - rest) / (passes * (k - 1));
   }
@@ -173,7 +173,7 @@ class Control {
   const Block& block_;
   const Parameters& p_;
   Roles roles_;
-  std::uint32_t k_ = 0;
+  std::uint64_t k_ = 0;
   Average result_;
 };
 

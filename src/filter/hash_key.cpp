@@ -55,12 +55,15 @@ std::uint64_t CellKey::hash() const {
   return bits;
 }
 
-Cubes::Cubes(double reach) : per_unit_(std::ceil(std::sqrt(3) / reach * (1 + kMargin))) {}
+Cubes::Cubes(double reach, bool jittered)
+    : per_unit_(std::ceil((jittered ? 2 : 1) * std::sqrt(3) / reach * (1 + kMargin))),
+      jittered_(jittered) {}
 
-void Cubes::write(const Vec3& v, float (&out)[3]) const {
+void Cubes::write(const Vec3& v, std::uint64_t bits, float (&out)[3]) const {
   constexpr double kMost = 1e9;  // finer than floats
   for (int axis = 0; axis < 3; ++axis) {
-    out[axis] = per_unit_ < kMost ? whole(double{v[axis]} * per_unit_ + 0.5) : v[axis] + 0.0f;
+    const double shift = jittered_ ? to_unit(bits << (21 * axis)) : 0.5;
+    out[axis] = per_unit_ < kMost ? whole(double{v[axis]} * per_unit_ + shift) : v[axis] + 0.0f;
   }
 }
 
@@ -70,17 +73,18 @@ KeyMaker::KeyMaker(const Records& records, const WeightTerms& terms, double scal
       on_(terms),
       scale_(scale),
       first_path_(first_path),
-      normals_(chord(terms.normal)),
-      reflectances_(double{terms.reflectance.value_or(1)}),
-      directions_(chord(terms.direction)),
+      normals_(chord(terms.normal), true),
+      reflectances_(double{terms.reflectance.value_or(1)}, false),
+      directions_(chord(terms.direction), true),
       hit_step_(step_of(terms.hit_distance)) {}
 
 CellKey KeyMaker::operator()(std::uint32_t i, float r_i, int coarser) const {
   CellKey key;
   place(i, double{r_i}, coarser, key);
-  if (on_.normal) normals_.write(r_.normal[i], key.normal);
-  if (on_.reflectance) reflectances_.write(r_.reflectance[i], key.reflectance);
-  if (on_.direction) directions_.write(r_.direction[i], key.direction);
+  const std::uint64_t bits = scramble(~(first_path_ + i));
+  if (on_.normal) normals_.write(r_.normal[i], bits, key.normal);
+  if (on_.reflectance) reflectances_.write(r_.reflectance[i], 0, key.reflectance);
+  if (on_.direction) directions_.write(r_.direction[i], scramble(bits), key.direction);
   if (on_.hit_distance) key.hit_distance = hit_distance(r_.hit_distance[i]);
   if (on_.visibility) key.visibility = r_.visibility[i];
   if (on_.material) key.material = r_.material[i];

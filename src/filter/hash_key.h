@@ -21,16 +21,19 @@ struct CellKey {
 };
 static_assert(sizeof(CellKey) == 64, "bytes of a key are compared, so there are no holes in it");
 
-// Vectors counted in cubes whose diagonal is at most `reach`, so that any two of one cube are no
-// farther apart. A whole number of cubes goes into 1, and 0 and 1, the components of walls, lie in
-// the middle of a cube, where rounding cannot split them. Reach 0: only equal vectors share a cube.
+// Vectors counted in cubes, such that any two of one cube are at most `reach` apart. A whole number
+// of cubes goes into 1, and 0 and 1, the components of walls, lie in the middle of a cube, where
+// neither rounding nor jitter splits them. Reach 0: only equal vectors share a cube.
 class Cubes {
  public:
-  explicit Cubes(double reach);
-  void write(const Vec3& v, float (&out)[3]) const;
+  // `jittered`: vectors are moved by up to half a cube each way, so cubes are half as long.
+  Cubes(double reach, bool jittered);
+  // `bits`: random, of the jitter.
+  void write(const Vec3& v, std::uint64_t bits, float (&out)[3]) const;
 
  private:
   double per_unit_;
+  bool jittered_;
 };
 
 // Makes keys such that any two records with one key pass every term of `terms`; `plane` is not

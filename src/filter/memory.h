@@ -32,12 +32,13 @@ namespace psf::filter {
   std::uint64_t bytes = kResult + kLists + kRadius + columns + kSum + kQuads + groups + kParents;
   if (parameters.demodulate || parameters.iterations > 1) bytes += kVector;  // what is averaged
   if (disk) bytes += kWord;                                                  // areas
-  // A key, two entries to sort and its hash, place in a cell; there is no tree.
+  // A key, its hash, two entries to sort, places in cells, twice where there are orphans; no tree.
   if (parameters.estimator == Estimator::hash)
-    bytes = kResult + kLists + kRadius + 64 + 44 + kVector;
+    bytes = kResult + kLists + kRadius + 64 + 64 + kVector;
   // Values, means and moments, the roles of a half; its tree is smaller.
   if (parameters.estimator == Estimator::control) bytes += 3 * kVector + 3 * kWord + 1;
-  // Radii, those in double, luminances; the rings' tree is gone before that of the averages is made.
+  // Radii, those in double, luminances; the rings' tree is gone before that of the averages is
+  // made.
   if (parameters.estimator == Estimator::adaptive) bytes += kWord + 2 * kWord + kVector;
   return bytes;
 }

@@ -77,7 +77,7 @@ struct Parameters {
   Estimator estimator = Estimator::average;
   // Of [adaptive]: a ball grows until what is around it differs with this many standard errors,
   // > 0; measured in README.md.
-  double agree = 3;
+  double agree = 1.5;
   search::Kind search = search::Kind::flann;
   bool count_refusals = false;  // pairs in the balls and refusals by term; about doubles the time
 

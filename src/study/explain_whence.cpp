@@ -40,48 +40,50 @@ class Tracer {
     pixel.paths =
         static_cast<std::uint64_t>(std::count_if(e_.paths.begin(), e_.paths.end(), is_counted));
     Colour own(0, 0, 0), reflected(0, 0, 0), alpha(0, 0, 0);
-    std::vector<double> seen;
+    std::vector<double>
+        averaged;  // the part that is averaged: the rest is the same, filtered or not
     double brightest = 0;
     for (std::size_t p = 0; p < e_.paths.size(); ++p) {
       const ExplainedPath& path = e_.paths[p];
       const std::uint32_t i = path.vertex;
       const bool bare = path.fate == PathFate::no_vertex;
       if (!is_counted(path)) continue;
-      Colour radiance = pixel_if_.unfiltered(i);
+      Colour radiance = pixel_if_.unfiltered(i), part(0, 0, 0);
       pixel.filtered += radiance;
       if (!bare) pixel.filtered += wide(e_.vertices.throughput[i]) * wide(path.c_bar);
       if (!bare && !e_.is_source[i]) continue;
       if (!bare) {
         const Colour alpha_i = wide(e_.vertices.throughput[i]);
-        const Colour contribution = wide(e_.vertices.contribution[i]);
-        radiance += alpha_i * contribution;
-        reflected += alpha_i * contribution;
+        part = alpha_i * wide(e_.vertices.contribution[i]);
+        averaged.push_back(luminance(part));
+        radiance += part;
+        reflected += part;
         alpha += alpha_i;
       }
       own += radiance;
-      seen.push_back(luminance(radiance));
-      if (seen.back() <= brightest) continue;
-      brightest = seen.back();
+      ++pixel.own_paths;
+      if (luminance(radiance) <= brightest) continue;
+      brightest = luminance(radiance);
       pixel.brightest = p;
     }
     if (pixel.paths > 0) pixel.filtered /= static_cast<double>(pixel.paths);
-    pixel.own_paths = seen.size();
-    if (seen.empty()) return;
-    pixel.own = own / static_cast<double>(seen.size());
-    const double mean = luminance(*pixel.own);
+    if (pixel.own_paths == 0) return;
+    const auto n = static_cast<double>(pixel.own_paths);
+    pixel.own = own / n;
     if (luminance(own) > 0) pixel.brightest_share = brightest / luminance(own);
-    pixel.own_error = standard_error(seen, mean);
+    pixel.own_error =
+        standard_error(averaged, luminance(reflected)) * static_cast<double>(averaged.size()) / n;
     for (int c = 0; c < 3; ++c) {
       if (alpha[c] != 0) pixel.baseline[c] = reflected[c] / alpha[c];
     }
   }
 
-  static double standard_error(const std::vector<double>& values, double mean) {
+  static double standard_error(const std::vector<double>& values, double sum) {
     if (values.size() < 2) return 0;
-    double sum = 0;
-    for (const double value : values) sum += (value - mean) * (value - mean);
     const auto n = static_cast<double>(values.size());
-    return std::sqrt(sum / (n - 1) / n);
+    double squares = 0;
+    for (const double value : values) squares += (value - sum / n) * (value - sum / n);
+    return std::sqrt(squares / (n - 1) / n);
   }
 
   void count_refusals() {

@@ -20,7 +20,8 @@ struct PixelSums {
   Colour filtered{0, 0, 0};     // [pixel]
   std::uint64_t own_paths = 0;  // of them, those with a radiance of their own
   std::optional<Colour> own;    // their mean, unfiltered
-  double own_error = 0;         // standard error of its luminance; 0 for a single path
+  double own_error = 0;         // standard error of the part of its luminance that is averaged,
+                                // alpha_i c_i; 0 for a single path
   std::size_t brightest = 0;    // the path with most luminance of its own, place in ::paths
   double brightest_share = 0;   // of `own`
   Colour baseline{0, 0, 0};     // o = sum alpha_i c_i / sum alpha_i over its own sources

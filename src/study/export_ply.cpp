@@ -13,6 +13,7 @@
 #include "study/export.h"
 #include "study/export_colour.h"
 #include "study/export_file.h"
+#include "study/ply_header.h"
 
 namespace psf::study {
 namespace {
@@ -86,24 +87,21 @@ class Cloud {
   }
 
   [[nodiscard]] std::string header(std::uint64_t points) const {
-    std::string text =
-        "ply\nformat binary_little_endian 1.0\ncomment psf export: vertices of light transport "
-        "paths\n";
-    text += fmt::format("element vertex {}\n", points);
-    const auto properties = [&](std::string_view type, std::initializer_list<const char*> names) {
-      for (const char* name : names) text += fmt::format("property {} {}\n", type, name);
+    std::vector<PlyProperty> properties;
+    const auto add = [&](std::string_view type, std::initializer_list<const char*> names) {
+      for (const char* name : names) properties.push_back({type, name});
     };
-    properties("float", {"x", "y", "z"});
-    if (normal_) properties("float", {"nx", "ny", "nz"});
-    if (colours_) properties("uchar", {"red", "green", "blue"});
+    add("float", {"x", "y", "z"});
+    if (normal_) add("float", {"nx", "ny", "nz"});
+    if (colours_) add("uchar", {"red", "green", "blue"});
     for (const Scalars& scalars : scalars_) {
       for (std::size_t c = 0; c < scalars.components; ++c) {
         const auto& channel = records_.reader().head().channels[scalars.channel];
-        text += fmt::format("property {} scalar_{}\n", scalars.wide ? "double" : "float",
-                            component_name(channel, c));
+        properties.push_back(
+            {scalars.wide ? "double" : "float", "scalar_" + component_name(channel, c)});
       }
     }
-    return text + "end_header\n";
+    return ply_header("psf export: vertices of light transport paths", points, properties);
   }
 
   void write(ExportFile& file, const auto& step) {

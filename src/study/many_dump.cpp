@@ -1,11 +1,15 @@
 #include "study/many_dump.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
 
+#include "core/error.h"
 #include "core/parallel.h"
 #include "filter/blocks.h"
+#include "filter/parameters_text.h"
 #include "filter/radius.h"
 #include "study/block_reader.h"
 
@@ -32,7 +36,7 @@ MemoryRequest request_of(const Dump& dump, const ManyRun& run, std::size_t last,
           run.passes.first,
           last,
           run.max_memory,
-          kCopies * ManyPictures::bytes_of_sums(radii),
+          kCopies * run.parts * ManyPictures::bytes_of_sums(radii),
           filter::memory_of_many(radii, longest_of_two(dump, run, last))};
 }
 
@@ -47,9 +51,12 @@ class ManyRunner {
         reader_(dump, channels_) {
     outcome_.memory =
         plan_memory(dump_, channels_, request_of(dump_, run_, last_, run_.radii.size()));
-    for (const filter::CameraView& camera : dump_.cameras()) {
-      outcome_.pictures.emplace_back(camera, run_.radii.size());
+    for (std::size_t part = 0; part < run_.parts; ++part) {
+      for (const filter::CameraView& camera : dump_.cameras()) {
+        outcome_.pictures.emplace_back(camera, run_.radii.size());
+      }
     }
+    check_parts();
     outcome_.statistics.resize(run_.radii.size());
   }
 
@@ -64,6 +71,17 @@ class ManyRunner {
   }
 
  private:
+  void check_parts() const {
+    const filter::Blocks blocks(run_.parameters.block, dump_.pass_bounds(), first_, last_);
+    if (blocks.count() >= run_.parts) return;
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: --block {} makes {} of {} passes, so there are no {} parts to "
+                            "compare; give a smaller --block or a longer dump",
+                            dump_.reader().path(), filter::to_text(run_.parameters.block),
+                            blocks.count() == 1 ? "one block" : "too few blocks", last_ - first_,
+                            run_.parts));
+  }
+
   // Whole blocks are kept from one number of passes to the next.
   void filter_up_to(std::uint64_t n, bool final) {
     const filter::Blocks blocks(run_.parameters.block, dump_.pass_bounds(), first_, first_ + n);
@@ -92,16 +110,19 @@ class ManyRunner {
     const filter::Records records =
         reader_.read(range, ahead ? std::optional(blocks[k + 1]) : std::nullopt).view();
     const filter::Block block = describe_block(dump_, blocks, k, run_.radii.front().count);
+    const std::size_t cameras = dump_.cameras().size();
+    const std::span<ManyPictures> pictures =
+        std::span(outcome_.pictures).subspan(k % run_.parts * cameras, cameras);
     filter::ManyAverages averages;
     core::undisturbed([&] {
-      averages = filter::average_many(
-          records, block, run_.parameters, run_.radii, [&](const filter::Slab& slab) {
-            outcome_.overflows += add_slab(records, slab, outcome_.pictures);
-          });
+      averages = filter::average_many(records, block, run_.parameters, run_.radii,
+                                      [&](const filter::Slab& slab) {
+                                        outcome_.overflows += add_slab(records, slab, pictures);
+                                      });
     });
     for (std::size_t i = 0; i < records.size(); ++i) {
       const std::size_t camera = records.camera.empty() ? 0 : records.camera[i];
-      outcome_.pictures[camera].add_record(records, averages.roles[i], i);
+      pictures[camera].add_record(records, averages.roles[i], i);
     }
     for (std::size_t r = 0; r < run_.radii.size(); ++r) {
       outcome_.statistics[r] += averages.statistics[r];

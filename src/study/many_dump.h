@@ -17,7 +17,7 @@
 namespace psf::study {
 
 struct ManyOutcome {
-  std::vector<ManyPictures> pictures;          // one a camera
+  std::vector<ManyPictures> pictures;          // one a camera, part after part
   std::vector<filter::Statistics> statistics;  // one a radius; the seconds are of all together
   // Mean over the queries of the last block, in pixels, one a radius; those of the first block.
   std::vector<double> last_radius, first_radius;
@@ -37,6 +37,9 @@ struct ManyRun {
   std::function<void(std::uint64_t n, const ManyOutcome&)> on_snapshot;
   std::function<void(std::uint64_t done, std::uint64_t total)> on_progress;  // paths
   std::optional<std::uint64_t> max_memory;                                   // bytes
+  // Blocks go to the pictures of so many parts in turn, which then are independent, filtered as the
+  // whole run filters them. At least so many blocks, else Error{usage}.
+  std::size_t parts = 1;
 };
 
 // The same pictures as filter_dump() for each radius, within rounding, from one traversal a block.

@@ -217,20 +217,33 @@ Study read_study(const std::string& folder, const std::string& kind) {
   return study;
 }
 
-}  // namespace
-
-std::vector<Study> read_studies(const std::string& folder) {
-  if (!fs::is_directory(folder)) throw Error(ErrorCode::io, folder + ": is no folder");
+std::vector<Study> studies_in(const std::string& folder) {
   std::vector<Study> studies;
   for (const char* kind : {"sweep", "converge"}) {
     if (fs::exists(fs::path(folder) / (std::string(kind) + ".json"))) {
       studies.push_back(read_study(folder, kind));
     }
   }
+  return studies;
+}
+
+}  // namespace
+
+std::vector<Study> read_studies(const std::string& folder) {
+  if (!fs::is_directory(folder)) throw Error(ErrorCode::io, folder + ": is no folder");
+  std::vector<Study> studies = studies_in(folder);
+  if (!studies.empty()) return studies;
+  std::set<std::string> inside;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.is_directory()) inside.insert(entry.path().string());
+  }
+  for (const std::string& one : inside) {
+    for (Study& study : studies_in(one)) studies.push_back(std::move(study));
+  }
   if (studies.empty()) {
     throw Error(ErrorCode::io, folder +
-                                   ": has neither sweep.json nor converge.json; make one "
-                                   "with psf sweep or psf converge and -o " +
+                                   ": has neither sweep.json nor converge.json; make one with psf "
+                                   "sweep or psf converge and -o " +
                                    folder);
   }
   return studies;

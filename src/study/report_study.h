@@ -25,8 +25,9 @@ struct Study {
   std::vector<StudyPicture> pictures;
 };
 
-// The studies of one folder: its sweep.json, its converge.json, or both in this order. Throws
-// Error{io} where there is none, Error{bad_input} where one is not what the verb writes.
+// The studies of one folder: its sweep.json, its converge.json, or both in this order; where it has
+// neither, those of the folders in it, by name. Throws Error{io} where there is none,
+// Error{bad_input} where one is not what the verb writes.
 [[nodiscard]] std::vector<Study> read_studies(const std::string& folder);
 
 }  // namespace psf::study

@@ -72,12 +72,12 @@ std::string csv_cell(const Json& value) {
   return quoted + "\"";
 }
 
-Json read_study_file(const std::string& path, const std::string& kind) {
+Json read_study_file(const std::string& path, const std::string& kind, const std::string& remedy) {
   std::ifstream file(path);
   if (!file) throw Error(ErrorCode::io, path + ": cannot be read");
   const Json json = Json::parse(file, nullptr, false);
-  const auto refuse = [&path](const std::string& why) {
-    return Error(ErrorCode::bad_input, fmt::format("{}: {}; write into another folder", path, why));
+  const auto refuse = [&](const std::string& why) {
+    return Error(ErrorCode::bad_input, fmt::format("{}: {}; {}", path, why, remedy));
   };
   if (json.is_discarded() || !json.is_object()) throw refuse("is no JSON of ours");
   if (json.value("kind", "") != kind) throw refuse("is no " + kind);

@@ -38,7 +38,8 @@ inline constexpr int kStudyFormat = 1;  // of the files; a change that readers m
 [[nodiscard]] std::string csv_cell(const Json& value);
 
 // Throws Error{bad_input} where the file is no JSON or of another kind or format, Error{io} where
-// it cannot be read. `kind`: "sweep".
-[[nodiscard]] Json read_study_file(const std::string& path, const std::string& kind);
+// it cannot be read. `kind`: "sweep"; `remedy`: ends the message.
+[[nodiscard]] Json read_study_file(const std::string& path, const std::string& kind,
+                                   const std::string& remedy);
 
 }  // namespace psf::study

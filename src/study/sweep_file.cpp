@@ -31,7 +31,7 @@ SweepFile::SweepFile(std::string folder, About about, bool resume) : folder_(std
     throw Error(ErrorCode::usage,
                 path + ": is there already; give --resume to add to it, or another folder");
   }
-  Json before = read_study_file(path, "sweep");
+  Json before = read_study_file(path, "sweep", "give another folder");
   const auto same = [&](const char* what, const Json& old, const Json& now) {
     if (old == now) return;
     throw Error(ErrorCode::bad_input,
@@ -102,7 +102,8 @@ std::string SweepFile::csv() const {
       for (const auto& [key, value] : row[group].items()) add(names ? Json(key) : value);
     }
     add(names ? Json("neighbors") : row["neighbors"]);
-    for (const auto& [key, value] : row["radius"].items()) add(names ? Json("radius_" + key) : value);
+    for (const auto& [key, value] : row["radius"].items())
+      add(names ? Json("radius_" + key) : value);
     for (const char* key : {"orphans", "left_out", "seconds", "shared", "picture"}) {
       add(names ? Json(key) : row[key]);
     }

@@ -15,7 +15,7 @@ using filter::Estimator;
 using tests::EstimatorRun;
 using tests::RecordSet;
 
-constexpr Estimator kNew[] = {Estimator::hash, Estimator::control};
+constexpr Estimator kNew[] = {Estimator::hash, Estimator::control, Estimator::adaptive};
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 const char* name_of(Estimator estimator) {

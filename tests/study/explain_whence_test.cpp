@@ -88,6 +88,28 @@ TEST_CASE("A shadow's border that leaks is told by its lights, and what refuses 
   CHECK(is_close(cured.refusals[0].without, whence.pixel.filtered));
 }
 
+TEST_CASE("The noise of a pixel's own paths is that of what is averaged, not of the rest") {
+  const TempFolder folder;
+  RecordSet set = half_lit_floor();
+  const std::size_t pixel = 5 * 20 + 11;
+  for (std::size_t pass = 0; pass < 4; ++pass) {
+    const float c = 0.1f * static_cast<float>(pass + 1);
+    set.contribution[pass * 200 + pixel] = Rgb(c, c, c);
+  }
+  set.unfiltered[pixel] = Rgb(5, 5, 5);
+  write_dump(folder / "a.pvb", set, {kOne, {200, 200, 200, 200}, {}});
+  FilterRun run = default_run("all");
+  run.parameters.radius.r0 = 0;
+  const auto explanation = study::explain(study::Dump(folder / "a.pvb"), request_of(run, 0, 11, 5));
+  const study::PixelSums sums = study::whence(explanation).pixel;
+  REQUIRE(sums.own);
+  CHECK(is_close(sums.own->x, 0.25 + 5.0 / 4));
+  // 0.1 to 0.4: deviations 0.15, 0.05, 0.05, 0.15.
+  CHECK(is_close(sums.own_error, std::sqrt((2 * 0.0225 + 2 * 0.0025) / 3 / 4)));
+  CHECK(sums.brightest == 0);
+  CHECK(is_close(sums.brightest_share, 5.1 / 6));
+}
+
 TEST_CASE("A firefly is one source that makes up the difference") {
   const TempFolder folder;
   RecordSet set = half_lit_floor();

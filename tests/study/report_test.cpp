@@ -160,6 +160,17 @@ TEST_CASE("the page carries the studies, without the folders of files, and their
   CHECK(halves[3 * kSampleWidth + 5] == Imath::half(8 * 1.1875f).bits());
 }
 
+TEST_CASE("a folder of folders stands for the studies in them") {
+  const TempFolder folder;
+  write_sample(folder / "all/b", sample_sweep("room.json"));
+  write_sample(folder / "all/a", sample_converge("room.json"));
+  std::filesystem::create_directories(folder / "all/c");
+  const Page page = page_of({folder / "all"});
+  REQUIRE(page.data["sections"].size() == 2);
+  CHECK(page.data["sections"][0]["folder"] == "a");
+  CHECK(page.data["sections"][1]["folder"] == "b");
+}
+
 TEST_CASE("equal pictures are embedded once") {
   const TempFolder folder;
   write_sample(folder / "a", sample_sweep("room.json"));

@@ -20,8 +20,9 @@ namespace {
 using study::Colour;
 using study::luminance;
 
-// A firefly is worth a word from here on.
-constexpr double kDominates = 0.2;
+// A firefly is worth a word from here on, and a standard error says something.
+constexpr double kDominates = 0.2, kDominatesOwn = 0.5;
+constexpr std::uint64_t kEnoughPaths = 4;
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -47,9 +48,10 @@ class Overview {
     const std::uint32_t first = e_.paths.front().vertex;
     const auto [x, y] = pixel_of(e_, first);
     const auto& cameras = report_.dump.metadata().cameras;
-    text_ = fmt::format("{}: {}pixel {},{} of camera \"{}\"\n", report_.dump.reader().path(),
+    const std::string& camera = cameras[v_.camera.empty() ? 0 : v_.camera[first]].name;
+    text_ = fmt::format("{}: {}pixel {},{}{}\n", report_.dump.reader().path(),
                         e_.request.path ? fmt::format("path {}, ", *e_.request.path) : "", x, y,
-                        cameras[v_.camera.empty() ? 0 : v_.camera[first]].name);
+                        camera.empty() ? "" : fmt::format(" of camera \"{}\"", shown(camera)));
     paths();
     for (const study::ExplainedPath& path : e_.paths) {
       if (has_vertex(path)) own_.push_back(&path);
@@ -165,9 +167,8 @@ class Overview {
     line("filtered", colour(pixel.filtered));
     const auto& sources = report_.whence.sources;
     if (pixel.own_paths == 0) return line("own paths", "none has a contribution to compare with");
-    line("own paths", colour(*pixel.own) +
-                          (pixel.own_paths > 1 ? fmt::format(" +- {:.2g}", pixel.own_error) : ""));
-    if (pixel.own_paths > 1 && pixel.brightest_share > 0.5) {
+    line("own paths", colour(*pixel.own));
+    if (pixel.own_paths >= kEnoughPaths && pixel.brightest_share > kDominatesOwn) {
       line("",
            fmt::format("path {} alone is {:.0f}% of that",
                        e_.record[e_.paths[pixel.brightest].vertex], 100 * pixel.brightest_share));
@@ -176,10 +177,13 @@ class Overview {
     const double difference = luminance(pixel.difference), own = luminance(*pixel.own);
     std::string text = fmt::format("{:+.4g}", difference);
     if (own > 0) text += fmt::format(" ({:+.1f}%)", 100 * difference / own);
-    if (pixel.own_error > 0) {
+    if (pixel.own_paths < kEnoughPaths) {
+      text += ", with too few paths of its own to tell it from noise";
+    } else if (pixel.own_error > 0) {
       const double errors = std::abs(difference) / pixel.own_error;
-      text += fmt::format(", {:.1f} standard errors of its own paths: {}", errors,
-                          errors < 2 ? "may be their noise" : "more than their noise");
+      text +=
+          fmt::format(", {:.1f} standard errors ({:.2g}) of its own paths: {}", errors,
+                      pixel.own_error, errors < 2 ? "may be their noise" : "more than their noise");
     }
     line("difference", text);
     const double filtered = luminance(pixel.filtered);

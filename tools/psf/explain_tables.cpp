@@ -45,7 +45,7 @@ class Tables {
   void say(fmt::format_string<T...> format, T&&... values) {
     fmt::format_to(std::back_inserter(text_), format, std::forward<T>(values)...);
   }
-  [[nodiscard]] std::size_t shown(std::size_t rows) const { return std::min(rows, report_.top); }
+  [[nodiscard]] std::size_t rows_of(std::size_t rows) const { return std::min(rows, report_.top); }
   void rest(std::size_t rows) {
     if (rows > report_.top) say("  and {} more\n", with_commas(rows - report_.top));
   }
@@ -85,7 +85,7 @@ class Tables {
     if (w_.kinds.empty()) return;
     say("  {:<44}{:>10}{:>12}{:>12}{:>14}\n", "told from the vertex by", "pairs", "of those",
         "of others", "adds");
-    for (std::size_t k = 0; k < shown(w_.kinds.size()); ++k) {
+    for (std::size_t k = 0; k < rows_of(w_.kinds.size()); ++k) {
       const study::KindShare& kind = w_.kinds[k];
       say("  {:<44}{:>10}{:>12}{:>12}{:>+14.4g}\n", kind_text(kind.terms), with_commas(kind.pairs),
           percent(kind.leaking, w_.leak_pairs), percent(kind.pairs - kind.leaking, w_.other_pairs),
@@ -129,13 +129,13 @@ class Tables {
     say("\n{:<24}{:>9}{:>11}{:>11}{:>9}{:>9}{:>9}{:>10}{:>8}\n", "sources from pixel", "sources",
         "of those", "adds", "angle", "albedo", "lights", "material", "plane");
     const auto [x, y] = pixel_of(e_, e_.paths.front().vertex);
-    for (std::size_t k = 0; k < shown(w_.pixels.size()); ++k) {
+    for (std::size_t k = 0; k < rows_of(w_.pixels.size()); ++k) {
       const study::PixelShare& of = w_.pixels[k];
       const std::uint32_t width = e_.widths[of.camera];
       const std::uint32_t from_x = of.pixel % width, from_y = of.pixel / width;
       std::string name = fmt::format("{},{}", from_x, from_y);
       if (e_.widths.size() > 1)
-        name += " " + report_.dump.metadata().cameras[of.camera].name;
+        name += " " + shown(report_.dump.metadata().cameras[of.camera].name);
       else if (from_x == x && from_y == y)
         name += " itself";
       say("  {:<22}{:>9}{:>11}{:>+11.3g}{:>9}{:>9}{:>9}{:>10}{:>8}\n", name,
@@ -150,7 +150,7 @@ class Tables {
   void sources() {
     say("\n{:<12}{:>6}{:>10}{:>11}{:>8}{:>10}{:>8}{:>8}{:>9}{:>10}{:>8}\n", "source", "pass",
         "pixel", "adds", "share", "distance", "angle", "albedo", "lights", "material", "plane");
-    for (std::size_t k = 0; k < shown(w_.sources.size()); ++k) {
+    for (std::size_t k = 0; k < rows_of(w_.sources.size()); ++k) {
       const study::SourceShare& source = w_.sources[k];
       const study::ExplainedPair& pair = e_.pairs[source.pair];
       const study::PairFeatures f = study::features_of(e_, pair);
@@ -184,7 +184,7 @@ class Tables {
     say("\n{:<12}{:>6}{:>12}{:>11}{:>10}{:>11}{:>11}{:>11}{:>11}\n", "path", "pass", "radius",
         "neighbors", "in ball", "alpha", "c", "c_bar", "u");
     const auto light = [](const Rgb& c) { return fmt::format("{:.4g}", psf::luminance(c)); };
-    for (std::size_t p = 0; p < shown(e_.paths.size()); ++p) {
+    for (std::size_t p = 0; p < rows_of(e_.paths.size()); ++p) {
       const study::ExplainedPath& path = e_.paths[p];
       const std::uint32_t i = path.vertex;
       const std::string u = v_.unfiltered.empty() ? "0" : light(v_.unfiltered[i]);

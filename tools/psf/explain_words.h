@@ -37,7 +37,15 @@ inline std::pair<std::uint32_t, std::uint32_t> pixel_of(const study::Explanation
   return {v.pixel[vertex] % width, v.pixel[vertex] / width};
 }
 
-// Light l owns bit l mod 32. Text of a file may hold what a terminal obeys.
+// Text of a file may hold what a terminal obeys.
+inline std::string shown(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(),
+      [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7F'; }, '?');
+  return text;
+}
+
+// Light l owns bit l mod 32.
 inline std::string lights_text(const study::Dump& dump, std::uint32_t bits) {
   std::string text;
   const auto& names = dump.metadata().lights;
@@ -46,10 +54,7 @@ inline std::string lights_text(const study::Dump& dump, std::uint32_t bits) {
     const bool one = bit < names.size() && bit + 32 >= names.size() && !names[bit].empty();
     text += (text.empty() ? "" : "+") + (one ? names[bit] : fmt::format("{}", bit));
   }
-  std::replace_if(
-      text.begin(), text.end(),
-      [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7F'; }, '?');
-  return text;
+  return shown(text);
 }
 
 }  // namespace psf::tools

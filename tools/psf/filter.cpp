@@ -18,6 +18,7 @@
 #include "filter_report.h"
 #include "pass_range.h"
 #include "picture_names.h"
+#include "tuned.h"
 #include "verbs.h"
 #include "version.h"
 
@@ -158,7 +159,9 @@ void run(const FilterOptions& options) {
   keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
   study::FilterRun run;
-  run.parameters = parameters_of(options);
+  FilterOptions chosen = options;
+  if (!options.tuned.empty()) read_tuned(options.tuned, chosen);
+  run.parameters = parameters_of(chosen);
   run.passes = parse_passes(options.passes);
   run.max_memory = options.max_memory;
   if (options.follow) wait_for_first_pass(options.input);

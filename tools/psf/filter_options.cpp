@@ -113,15 +113,17 @@ void add_parameter_options(CLI::App& command, ParameterOptions& options) {
   command.add_option("--sources", options.sources, "use only this share of the contributions")
       ->type_name("1/K");
   command
-      .add_option("--estimator", options.estimator,
-                  "average; disk: photon mapping's; hash: cells of a jittered grid; control: halves "
-                  "as control variates, unbiased; adaptive: balls whose contributions agree")
+      .add_option(
+          "--estimator", options.estimator,
+          "average; disk: photon mapping's; hash: cells of a jittered grid; control: halves "
+          "as control variates, unbiased; adaptive: balls whose contributions agree")
       ->check(CLI::IsMember(filter::kEstimatorNames))
       ->capture_default_str();
   command
-      .add_option("--agree", options.agree,
-                  "of --estimator adaptive: a ball grows while what is around it differs by at most "
-                  "so many standard errors")
+      .add_option(
+          "--agree", options.agree,
+          "of --estimator adaptive: a ball grows while what is around it differs by at most "
+          "so many standard errors")
       ->capture_default_str();
   command
       .add_option(
@@ -139,7 +141,13 @@ void add_filter_options(CLI::App& command, FilterOptions& options) {
       ->required()
       ->type_name("FILE")
       ->allow_extra_args(false);
+  const std::size_t before = command.get_options().size();
   add_parameter_options(command, options);
+  const std::vector<CLI::Option*> all = command.get_options();
+  CLI::Option* tuned = command.add_option("--tuned", options.tuned,
+                                          "take the parameters that psf tune --json chose");
+  tuned->type_name("FILE");
+  for (std::size_t k = before; k < all.size(); ++k) tuned->excludes(all[k]);
   command.add_option("--passes", options.passes, kPassesHelp)->type_name("FIRST:LAST");
   command
       .add_option("--snapshots", options.snapshots,

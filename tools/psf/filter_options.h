@@ -30,6 +30,7 @@ struct FilterOptions : ParameterOptions {
   std::string input;
   std::vector<std::string> outputs;
   std::string passes, snapshots;  // as written; empty: all, none
+  std::string tuned;              // a file of psf tune that the parameters come from; empty: none
   bool refusals = false, follow = false;
   std::optional<std::uint64_t> max_memory;  // bytes
 };

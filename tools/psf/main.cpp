@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   psf::tools::add_compare(app);
   psf::tools::add_sweep(app);
   psf::tools::add_converge(app);
+  psf::tools::add_tune(app);
   psf::tools::add_explain(app);
   psf::tools::add_report(app);
   return psf::tools::run_tool(app, argc, argv);

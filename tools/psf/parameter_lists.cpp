@@ -125,6 +125,7 @@ void add_parameter_lists(CLI::App& command, ParameterLists& lists) {
   add("--sources", lists.sources, "LIST", "1/1,1/4 (default 1/1)");
   add("--estimator", lists.estimator, "LIST",
       "as of psf filter: average,disk,... (default average)");
+  add("--agree", lists.agree, "LIST", "standard errors, of the estimator adaptive");
   command.add_flag("--no-weights", lists.no_weights, "no terms but those given")
       ->group("Lists of parameters");
 }
@@ -154,6 +155,9 @@ std::vector<filter::Parameters> all_sets(const ParameterLists& lists) {
   };
   using Options = ParameterOptions;
   multiply(lists.estimator, "--estimator", text_of(&Options::estimator));
+  multiply(lists.agree, "--agree", [](Options& set, const std::string& value) {
+    set.agree = parse_value<decltype(set.agree)>(value, "--agree");
+  });
   multiply(lists.block, "--block", text_of(&Options::block));
   multiply(lists.radius_count, "--radius-count", [](Options& set, const std::string& value) {
     if (value != "samples" && value != "blocks") {

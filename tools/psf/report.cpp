@@ -51,7 +51,9 @@ void add_report(CLI::App& app) {
   options->report.version = kVersion;
   CLI::App* command = app.add_subcommand(
       "report", "make one HTML page of sweeps and convergence studies: maps, plots, pictures");
-  command->add_option("DIR", options->folders, "folders that psf sweep or psf converge wrote")
+  command
+      ->add_option("DIR", options->folders,
+                   "folders that psf sweep or psf converge wrote, or a folder of such")
       ->required();
   command->add_option("-o,--output", options->output, "the page")
       ->required()

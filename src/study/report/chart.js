@@ -84,6 +84,7 @@ function makeChart(options) {
     series.forEach((one) => drawBand(lines, one, x, y));
     guides.forEach((guide) => drawGuide(lines, guide, x, y));
     series.forEach((one) => drawSeries(lines, one, x, y, options.y.log));
+    guides.forEach((guide) => drawGuideName(lines, guide, x, y));
     listenToChart(svg, area, series, x, y, options);
   }
 
@@ -194,6 +195,10 @@ function drawBand(area, series, x, y) {
 function drawGuide(area, guide, x, y) {
   const line = d3.svg.line().x((point) => x(point.x)).y((point) => y(point.y));
   area.append('path').attr('class', 'guide').attr('d', line(guide.points));
+}
+
+// After all lines, so that none crosses it out.
+function drawGuideName(area, guide, x, y) {
   const end = guide.points[guide.points.length - 1];
   const text = area.append('text')
                    .attr('class', 'guide-name')

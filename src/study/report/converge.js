@@ -96,7 +96,7 @@ function makeConverge(section, host) {
     return theoryOf(quantity, deltaOf(one))
         .flatMap((theory) => guideThrough(points, theory.slope, theory.name));
   };
-  const overN = {label: 'samples per pixel n', ticks: study.n};
+  const overN = {label: 'passes n', ticks: study.n};
   const speedup = (key) => (point, one) => {
     const found = (study.speedups || []).find((s) => s.id === one.id && s.n === point.n);
     return found && isNumber(found[key]) ? found[key] : null;
@@ -153,9 +153,8 @@ function makeConverge(section, host) {
     },
     ...['equal_time', 'equal_error'].map((key) => (study.speedups || []).length > 0 && {
       title: `Speed-up at ${key.replace('_', ' ')}`,
-      note: 'against unfiltered',
       x: overN,
-      y: {label: 'times', log: true},
+      y: {label: `${key === 'equal_time' ? 'error' : 'time'}, unfiltered / filtered`, log: true},
       series: () => lines(n, speedup(key))
     }),
   ].filter(Boolean).map(makeChart);
@@ -194,7 +193,8 @@ function makeConverge(section, host) {
   summarize();
   const constant = constantText(parameters);
   host.append(
-      makeFacts(study), makeVerdict(study.analytic), summary, controls, makeLegend(series, redraw),
+      makeFacts(study), makeVerdict(study.analytic, series), summary, controls,
+      makeLegend(series, redraw),
       make('div', {class: 'charts'}, charts.map((chart) => chart.element)),
       make(
           'p', {class: 'note'}, 'Dotted lines are theory: n', make('sup', {}, '\u22121'),
@@ -212,19 +212,22 @@ function timeNote(series) {
   return names.length ? names.join(' + ') : '';
 }
 
-// The verdict of --analytic: every figure that it holds.
-function makeVerdict(analytic) {
+// The verdict of --analytic, and each slope that it looked at.
+function makeVerdict(analytic, series) {
   if (!analytic) return '';
-  const figures = Object.entries(analytic)
-                      .filter(([, value]) => typeof value !== 'object')
-                      .map(
-                          ([name, value]) =>
-                              `${name} ${isNumber(value) ? formatNumber(value) : String(value)}`);
+  const name = (id) => (series.find((one) => one.id === id) || {name: id}).name;
+  const row = (slope) => make(
+      'tr', {}, make('th', {scope: 'row'}, name(slope.id)),
+      make('td', {}, slope.quantity.replace('_sq', '\u00b2')),
+      make('td', {class: 'number'}, formatSlope(slope.measured)),
+      make('td', {class: 'number'}, formatSlope(slope.theory)),
+      make('td', {class: slope.passed ? 'good' : 'bad'}, slope.passed ? 'agrees' : 'differs'));
+  const heads = ['series', 'quantity', 'slope', 'theory', ''];
   return make(
-      'p', {class: analytic.passed ? 'verdict passed' : 'verdict failed'},
+      'div', {class: analytic.passed ? 'verdict passed' : 'verdict failed'},
+      make('b', {}, `The slopes ${analytic.passed ? '' : 'do not '}agree with theory.`),
       make(
-          'b', {},
-          analytic.passed ? 'The slopes agree with theory.' :
-                            'The slopes do not agree with theory.'),
-      ` ${figures.join(', ')}`);
+          'table', {},
+          make('thead', {}, make('tr', {}, heads.map((head) => make('th', {scope: 'col'}, head)))),
+          make('tbody', {}, (analytic.slopes || []).map(row))));
 }

@@ -45,7 +45,8 @@ function makeHeatMap(label, rows, options) {
     if (value === null) return make('td', {class: 'empty'}, row ? kNothing : '');
     const color = errorRamp(scale.map(value));
     const best = row === options.best;
-    const worse = metric.lower ? value > options.base : value < options.base;
+    const worse =
+        options.base !== null && (metric.lower ? value > options.base : value < options.base);
     const cell = make(
         'td', {
           tabindex: -1,

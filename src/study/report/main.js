@@ -38,15 +38,17 @@
       makeConverge(section, element);
   });
 
-  if (pictures.length > 0) {
+  const leftOut = d3.sum(sections, (section) => section.left_out);
+  if (pictures.length > 0 || leftOut > 0) {
     document.getElementById('pictures').hidden = false;
     contents.append(make('a', {href: '#pictures'}, 'Pictures'));
+  }
+  if (pictures.length > 0) {
     sheet = makeSheet(pictures, show);
     viewer = makeViewer(pictures, sheet.mark);
     document.getElementById('viewer').append(viewer.element);
     document.getElementById('sheet').append(sheet.element);
   }
-  const leftOut = d3.sum(sections, (section) => section.left_out);
   document.getElementById('pictures-note').textContent = leftOut === 0 ?
       '' :
       `${formatCount(leftOut)} more ${

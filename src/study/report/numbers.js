@@ -31,3 +31,8 @@ function formatGain(value, base) {
   return value <= base ? `${formatNumber(base / value)}\u00d7 less than unfiltered` :
                          `${formatNumber(value / base)}\u00d7 more than unfiltered`;
 }
+
+// Exponents, -0.67
+function formatSlope(value) {
+  return isNumber(value) ? value.toFixed(2).replace('-', '\u2212') : kNothing;
+}

@@ -103,13 +103,13 @@ function makePanel(state, pictures, actions) {
     what.element.lastChild.disabled = !comparable;
     what.set(state.errors);
     legend.hidden = !state.errors;
-    exposureRow.hidden = state.errors;
+    for (const control of exposureRow.querySelectorAll('input, button')) {
+      control.disabled = state.errors;
+    }
     exposure.value = String(state.exposure);
-    const stops = state.exposure;
-    exposureText.textContent = `${
-        stops > 0     ? '+' :
-            stops < 0 ? '\u2212' :
-                        ''}${Math.abs(stops)} stops`;
+    const stops = Math.abs(state.exposure);
+    const sign = state.exposure > 0 ? '+' : state.exposure < 0 ? '\u2212' : '';
+    exposureText.textContent = `${sign}${stops} ${stops === 1 ? 'stop' : 'stops'}`;
   }
 
   function refreshView() {

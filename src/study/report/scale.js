@@ -26,10 +26,13 @@ function goodness(values, metric) {
 // Black or white ink on a colour, whichever has more contrast: never less than 4.5.
 function inkOn(color) { return d3.lab(color).l > 49.4 ? '#000000' : '#ffffff'; }
 
-// Decades, with 2 and 5 between where there are few: [{value, label}].
+// Decades, with others between where there are few: [{value, label}].
 function logTicks(low, high) {
   const decades = Math.log10(high / low);
-  const steps = decades < 0.7 ? [1, 1.5, 2, 3, 4, 5, 6, 7, 8] : decades < 2.2 ? [1, 2, 5] : [1];
+  const steps = decades < 0.7 ? [1, 1.5, 2, 3, 4, 5, 6, 7, 8] :
+      decades < 1.3           ? [1, 2, 3, 5, 7] :
+      decades < 2.6           ? [1, 2, 5] :
+                                [1];
   const every = Math.max(1, Math.ceil(decades / 7));
   const ticks = [];
   for (let e = Math.floor(Math.log10(low)); e <= Math.ceil(Math.log10(high)); ++e) {

@@ -12,24 +12,24 @@ function makeSlopes(study, series, metrics) {
   const delta = (row) => deltaOf(row.one);
   const slope = (name) => (row) => row.point.slope ? row.point.slope[name] : null;
   const theory = (of) => (row) => delta(row) === null ? null : of(delta(row));
-  const fixed = (value) => isNumber(value) ? value.toFixed(2).replace('-', '\u2212') : kNothing;
   const slopes = makeTable(
       [
         inSeries,
         numberColumn('from n', (row) => row.point.n, '', formatCount),
         numberColumn('to n', (row) => row.next.n, '', formatCount),
-        numberColumn(metrics[0].name, slope(metrics[0].name), 'slope of the whole error', fixed),
-        numberColumn('bias\u00b2', slope('bias_sq'), 'slope of the squared bias', fixed),
+        numberColumn(
+            metrics[0].name, slope(metrics[0].name), 'slope of the whole error', formatSlope),
+        numberColumn('bias\u00b2', slope('bias_sq'), 'slope of the squared bias', formatSlope),
         numberColumn(
             'smooth', theory((d) => -2 * d), 'theory of bias\u00b2, smooth radiance: \u22122\u03b4',
-            fixed),
+            formatSlope),
         numberColumn(
             'edge', theory((d) => -d / 2), 'theory of bias\u00b2 at an edge: \u2212\u03b4/2',
-            fixed),
-        numberColumn('variance', slope('variance'), 'slope of the variance', fixed),
+            formatSlope),
+        numberColumn('variance', slope('variance'), 'slope of the variance', formatSlope),
         numberColumn(
             'theory', (row) => delta(row) === null ? -1 : delta(row) - 1,
-            'theory of variance with many neighbours: \u2212(1 \u2212 \u03b4)', fixed),
+            'theory of variance with many neighbours: \u2212(1 \u2212 \u03b4)', formatSlope),
         numberColumn('M(n)', (row) => row.point.neighbors, 'mean neighbours'),
         numberColumn('radius px', (row) => row.point.radius_px, ''),
       ],
@@ -38,7 +38,7 @@ function makeSlopes(study, series, metrics) {
   const all = makeTable(
       [
         inSeries,
-        numberColumn('n', (row) => row.point.n, 'samples per pixel', formatCount),
+        numberColumn('n', (row) => row.point.n, 'passes', formatCount),
         ...metrics.map(
             (metric) => numberColumn(
                 metric.name, (row) => metricValue(row.point, metric), metricText(metric))),

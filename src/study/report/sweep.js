@@ -135,7 +135,8 @@ function makeSweep(section, host, open) {
       make('h3', {}, 'All rows'),
       make('p', {class: 'note'}, constant ? `The same in all: ${constant}.` : ''),
       makeTable(sweepColumns(study, varying), study.rows, {
-        caption: `${formatCount(study.rows.length)} rows; a heading sorts`,
+        caption: `${formatCount(study.rows.length)} ${
+            study.rows.length === 1 ? 'row' : 'rows'}; a heading sorts`,
         mark: (row) => row === winner ? 'best' : null,
       }));
 }

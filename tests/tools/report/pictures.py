@@ -152,7 +152,7 @@ class Viewer(PageTest):
         error = sum(((self.scale - 1) * c) ** 2 / (c * c + 0.01) for c in radiance(39, 0)) / 3
         place = round(255 * (math.log10(error) + 4) / 5)
         self.assertEqual(bright, self.page.run(f'falseTable[{place}]'))
-        self.assertTrue(self.page.run('document.querySelector(".exposure").hidden'))
+        self.assertTrue(self.page.run('document.getElementById("exposure").disabled'))
         self.click_text('.panel', 'Colours')
         self.settle()
         self.expect(12, 20, 1)

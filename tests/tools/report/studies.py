@@ -196,4 +196,5 @@ class Converge(PageTest):
                                    '\u22120.80', '\u22120.80', '100', '8.00'])
         self.click('#study-1 details:last-child summary')
         self.assertEqual(self.page.run('document.querySelectorAll("#study-1 details:last-child tbody tr").length'), 12)
-        self.assertEqual(self.text('.verdict'), 'The slopes agree with theory. passed true, worst_slope 0.0400')
+        self.assertEqual(self.text('.verdict b'), 'The slopes agree with theory.')
+        self.assertEqual(self.texts('.verdict tbody tr'), ['\u03b4 0.5bias\u00b2\u22121.04\u22121.00agrees'])

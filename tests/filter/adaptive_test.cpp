@@ -1,0 +1,173 @@
+// [adaptive]: balls stop where contributions no longer agree, and only there.
+#include "filter/adaptive.h"
+
+#include <cmath>
+#include <random>
+
+#include "catch.h"
+#include "estimator_case.h"
+#include "filter/agreement.h"
+
+namespace psf {
+namespace {
+
+using filter::Estimator;
+using filter::Moments;
+using tests::EstimatorRun;
+using tests::RecordSet;
+
+Moments moments_of(const std::vector<double>& values, std::size_t count) {
+  Moments m{static_cast<std::uint32_t>(count), 0, 0};
+  for (std::size_t k = 0; k < count; ++k) {
+    m.mean += values[k] / double(count);
+    m.mean_sq += values[k] * values[k] / double(count);
+  }
+  return m;
+}
+
+// The share of cases in which a ball of `inside` and what is around it, `beyond`, do not agree.
+template <typename Draw>
+double share_stopped(std::size_t inside, std::size_t beyond, double agree, Draw draw) {
+  std::mt19937 random(1);
+  std::size_t stopped = 0;
+  constexpr std::size_t kCases = 20000;
+  for (std::size_t t = 0; t < kCases; ++t) {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < inside + beyond; ++k) values.push_back(draw(random, k >= inside));
+    const bool agreed =
+        filter::agrees(moments_of(values, inside), moments_of(values, inside + beyond), agree);
+    stopped += agreed ? 0u : 1u;
+  }
+  return double(stopped) / kCases;
+}
+
+TEST_CASE("Of normal noise as many balls stop as the normal distribution says") {
+  const auto noise = [](std::mt19937& random, bool) {
+    return std::normal_distribution<double>(3, 1)(random);
+  };
+  // Two-sided: 4.55% beyond 2 standard errors, 0.27% beyond 3; a little more of few.
+  CHECK(share_stopped(200, 200, 2, noise) == Approx(0.0455).margin(0.006));
+  CHECK(share_stopped(200, 200, 3, noise) == Approx(0.0027).margin(0.0015));
+  CHECK(share_stopped(64, 200, 1.5, noise) == Approx(0.1336).margin(0.012));
+}
+
+TEST_CASE("A step of three times the noise of the means is found, a small one is not") {
+  for (const double step : {0.1, 1.0}) {
+    const auto field = [step](std::mt19937& random, bool beyond) {
+      return std::normal_distribution<double>(beyond ? 3 + step : 3, 1)(random);
+    };
+    const double share = share_stopped(100, 100, 3, field);
+    INFO("step " << step);
+    if (step == 1) CHECK(share > 0.99);
+    if (step == 0.1) CHECK(share < 0.03);
+  }
+}
+
+TEST_CASE("A firefly makes no ball stop, wherever it lies and however bright it is") {
+  for (const bool outside : {false, true}) {
+    for (const double bright : {1e2, 1e4, 1e8}) {
+      std::mt19937 random(2);
+      std::uniform_real_distribution<double> unit(0.5, 1.5);
+      std::size_t stopped = 0;
+      for (int t = 0; t < 2000; ++t) {
+        std::vector<double> values(192);
+        for (double& v : values) v = unit(random);
+        values[outside ? 140 : 10] = bright;
+        stopped += filter::agrees(moments_of(values, 64), moments_of(values, 192), 1.5) ? 0u : 1u;
+      }
+      CHECK(stopped == 0);
+    }
+  }
+}
+
+TEST_CASE("Paths with a long tail stop balls more often than normal noise, within bounds") {
+  const auto noise = [](std::mt19937& random, bool) {
+    return std::lognormal_distribution<double>(0, 1.5)(random);
+  };
+  // Normal noise: 0.27% and 13.4%.
+  CHECK(share_stopped(100, 100, 3, noise) < 0.005);
+  CHECK(share_stopped(100, 100, 1.5, noise) < 0.18);
+  // A small ball without its share of the tail, beside a ring that has it, is what fails.
+  CHECK(share_stopped(64, 640, 3, noise) > 0.01);
+  CHECK(share_stopped(64, 640, 3, noise) < 0.1);
+}
+
+TEST_CASE("Few contributions and equal ones always agree; so does what is no number") {
+  const Moments few{63, 1, 1}, more{900, 9, 81.5};
+  CHECK(filter::agrees(few, more, 0.1));
+  CHECK(filter::agrees({64, 1, 1}, {127, 9, 81}, 0.1));
+  CHECK(filter::agrees({64, 0.1f, 0.1f * 0.1f}, {500, 0.1f, 0.1f * 0.1f}, 0.1));
+  CHECK_FALSE(filter::agrees({64, 1, 1}, {500, 2, 4.1}, 3));
+  const double infinity = std::numeric_limits<double>::infinity();
+  CHECK(filter::agrees({64, 1, infinity}, {500, 2, infinity}, 3));
+}
+
+// A square of noise around 1 on the left and 3 on the right.
+RecordSet step_of_noise(std::size_t count, float right) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> unit(0, 1);
+  RecordSet set(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    set.position[i] = Vec3(2 * unit(random), 0, unit(random));
+    const float c = (set.position[i].x < 1 ? 1 : right) * 2 * unit(random);
+    set.contribution[i] = Rgb(c, c, c);
+  }
+  return set;
+}
+
+TEST_CASE("A ball keeps away from a step and is whole elsewhere") {
+  const RecordSet set = step_of_noise(60000, 4);
+  EstimatorRun run(Estimator::adaptive, 0.2);
+  run.parameters.agree = 3;
+  const filter::Average adaptive = run(set);
+  const filter::Average average = EstimatorRun(Estimator::average, 0.2)(set);
+  double error = 0, error_of_average = 0;
+  std::size_t whole = 0, far = 0, near = 0, small = 0;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const double x = double{set.position[i].x}, truth = x < 1 ? 1 : 4;
+    error += std::pow(double{adaptive.c_bar[i].x} - truth, 2);
+    error_of_average += std::pow(double{average.c_bar[i].x} - truth, 2);
+    const double gap = std::abs(x - 1);
+    if (gap > 0.21) {
+      ++far;
+      whole += adaptive.radius[i] == 0.2f ? 1u : 0u;
+      if (adaptive.radius[i] == 0.2f) REQUIRE(adaptive.neighbors[i] == average.neighbors[i]);
+    }
+    if (gap < 0.1 && gap > 0.06) {
+      ++near;
+      small += adaptive.radius[i] < 0.2f ? 1u : 0u;
+    }
+  }
+  CHECK(double(whole) > 0.9 * double(far));
+  CHECK(double(small) > 0.99 * double(near));
+  CHECK(error < error_of_average / 2);
+}
+
+TEST_CASE("Where nothing tells records apart every radius is the largest, and c_bar is average's") {
+  const RecordSet set = step_of_noise(3000, 1);
+  EstimatorRun run(Estimator::adaptive, 0.2);
+  run.parameters.agree = 1e9;
+  const filter::Average adaptive = run(set);
+  CHECK(adaptive.radius == std::vector<float>(set.size(), 0.2f));
+  CHECK(tests::same_bytes(adaptive.c_bar, EstimatorRun(Estimator::average, 0.2)(set).c_bar));
+}
+
+TEST_CASE("Every engine chooses the same radii") {
+  RecordSet set = step_of_noise(20000, 4);
+  // Sums of whole numbers are exact in any order.
+  for (Rgb& c : set.contribution) c = Rgb(0, std::floor(16 * c.x), 0);
+  for (std::size_t i = 0; i < set.size(); i += 3) set.flags[i] = filter::kHasVertex;
+  EstimatorRun run(Estimator::adaptive, 0.2);
+  run.parameters.agree = 2;
+  const filter::Average fast = run(set);
+  run.parameters.search = search::Kind::plain;
+  const filter::Average plain = run(set);
+  CHECK(fast.neighbors == plain.neighbors);
+  CHECK(fast.radius == plain.radius);
+  std::size_t smaller = 0;
+  for (const float r : fast.radius) smaller += r < 0.2f ? 1u : 0u;
+  CHECK(smaller > 100);
+}
+
+}  // namespace
+}  // namespace psf

@@ -1,0 +1,187 @@
+// psf tune: the best parameters for a dump, without a reference.
+#include "study/tune.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli.h"
+#include "core/output_file.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "filter/parameters_text.h"
+#include "parameter_lists.h"
+#include "pass_range.h"
+#include "study/study_file.h"
+#include "study_folder.h"
+#include "text.h"
+#include "verbs.h"
+#include "version.h"
+
+namespace psf::tools {
+namespace {
+
+struct TuneOptions {
+  CommonOptions common;
+  ParameterLists lists;
+  std::string input, passes, camera;
+  double epsilon = study::Tune().epsilon;
+  std::optional<std::uint64_t> max_memory;
+};
+
+constexpr const char* kRadii = "2px,2.8px,4px,5.7px,8px,11.3px,16px,22.6px,32px";
+constexpr std::size_t kShown = 8;  // rows of the table
+constexpr std::size_t kProgressSteps = 1000;
+constexpr double kCorrelated = 0.05;  // of the halves' noise: worth a word
+
+using Rows = std::vector<const study::TuneRow*>;
+
+Rows by_error(const study::Tuning& tuning) {
+  Rows rows;
+  for (const study::TuneRow& row : tuning.rows) rows.push_back(&row);
+  std::stable_sort(rows.begin(), rows.end(), [](const study::TuneRow* a, const study::TuneRow* b) {
+    return a->error < b->error;
+  });
+  return rows;
+}
+
+// As psf filter takes them, what is the default left out.
+std::string as_options(const filter::Parameters& parameters) {
+  const auto defaults = filter::describe(filter::Parameters());
+  const auto own = filter::describe(parameters);
+  std::string text;
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    if (own[k].second == defaults[k].second && own[k].first != "r0") continue;
+    text += fmt::format(" --{}={}", own[k].first, own[k].second);
+  }
+  return text.substr(1);
+}
+
+std::size_t alike(const study::Tuning& tuning) {
+  return static_cast<std::size_t>(
+      std::count_if(tuning.rows.begin(), tuning.rows.end(),
+                    [](const study::TuneRow& row) { return row.distance < study::kAlike; }));
+}
+
+void print(const study::Tuning& tuning, const study::Dump& dump) {
+  const Rows rows = by_error(tuning);
+  fmt::print("{:>10} {:>9} {:>10} {:>10} {:>10} {:>10}  parameters\n", "error", "+-", "bias^2",
+             "variance", "neighbours", "sigmas off");
+  for (std::size_t k = 0; k < std::min(kShown, rows.size()); ++k) {
+    const study::TuneRow& row = *rows[k];
+    fmt::print("{:>10.4g} {:>9.2g} {:>10.4g} {:>10.4g} {:>10.1f} {:>10.1f}  {}\n", row.error,
+               row.standard_error, row.bias_sq, row.variance, row.neighbors, row.distance,
+               as_options(row.parameters));
+  }
+  const study::TuneRow& best = tuning.rows[tuning.best];
+  fmt::print("unfiltered {:.4g}\nchosen: {}, which gains about {:.1f} times\n", tuning.unfiltered,
+             as_options(best.parameters), tuning.unfiltered / best.error);
+  const std::size_t close = alike(tuning);
+  if (close == 1) {
+    fmt::print("sure: every other set is at least {} standard errors worse\n", study::kAlike);
+  } else {
+    fmt::print(
+        "not sure: {} of {} sets are within {} standard errors of the best; more passes "
+        "would tell\n",
+        close, tuning.rows.size(), study::kAlike);
+  }
+  if (tuning.parts < 4) {
+    fmt::print("fewer than four blocks: the passes make two parts, which is less sure\n");
+  }
+  if (!tuning.has_independent_paths) {
+    fmt::print(
+        "the passes of a {} sequence are not independent: the noise of its parts correlates by "
+        "{:.3f}, so errors are known up to a constant, taken to be {:.3g}\n",
+        dump.metadata().sampler, tuning.correlation, tuning.constant);
+  } else if (std::abs(tuning.correlation) >= kCorrelated) {
+    fmt::print(
+        "the noise of its parts correlates by {:.3f}: what is common to them is taken for "
+        "truth\n",
+        tuning.correlation);
+  }
+}
+
+study::Json to_json(const study::Tuning& tuning, const study::TuneRow& row) {
+  return {{"parameters", study::to_json(row.parameters)},
+          {"error", row.error},
+          {"standard_error", row.standard_error},
+          {"bias_sq", row.bias_sq},
+          {"variance", row.variance},
+          {"neighbors", row.neighbors},
+          {"sigmas_above_least", row.distance},
+          {"alike", row.distance < study::kAlike},
+          {"gain", study::number_or_null(tuning.unfiltered / row.error)}};
+}
+
+void run(const TuneOptions& options) {
+  keep_freed_memory();
+  const core::ThreadLimit threads(options.common.threads);
+  ParameterLists lists = options.lists;
+  if (lists.r0.empty()) lists.r0 = kRadii;
+  const std::vector<filter::Parameters> sets = all_sets(lists);
+  const study::Dump dump(options.input);
+  study::Tune tune;
+  tune.sets = sets;
+  tune.passes = parse_passes(options.passes);
+  tune.camera = find_camera(dump, options.camera);
+  tune.epsilon = options.epsilon;
+  tune.max_memory = options.max_memory;
+  if (!options.common.json.empty()) core::OutputFile probe(options.common.json);
+  core::Progress progress("tune", kProgressSteps, options.common.quiet);
+  tune.on_progress = [&progress](std::uint64_t done, std::uint64_t total) {
+    progress.advance(static_cast<std::size_t>(kProgressSteps * static_cast<double>(done) /
+                                              static_cast<double>(total)));
+  };
+  const study::Tuning tuning = study::tune(dump, tune);
+  progress.finish();
+  print(tuning, dump);
+  if (options.common.json.empty()) return;
+  study::Json rows = study::Json::array();
+  for (const study::TuneRow* row : by_error(tuning)) rows.push_back(to_json(tuning, *row));
+  const study::Json json = {{"kind", "tune"},
+                            {"format", study::kStudyFormat},
+                            {"version", kVersion},
+                            {"input", study::describe_input(dump, tune.passes, tune.camera)},
+                            {"epsilon", options.epsilon},
+                            {"unfiltered", tuning.unfiltered},
+                            {"constant", tuning.constant},
+                            {"correlation", tuning.correlation},
+                            {"independent_paths", tuning.has_independent_paths},
+                            {"parts", tuning.parts},
+                            {"alike", alike(tuning)},
+                            {"best", to_json(tuning, tuning.rows[tuning.best])},
+                            {"rows", rows}};
+  core::write_text_file(options.common.json, json.dump(1) + "\n");
+  fmt::print("psf filter --tuned {} takes the choice\n", options.common.json);
+}
+
+}  // namespace
+
+void add_tune(CLI::App& app) {
+  auto options = std::make_shared<TuneOptions>();
+  CLI::App* command =
+      app.add_subcommand("tune", "find the best parameters for a dump, without a reference");
+  command->add_option("IN", options->input, "path-vertex buffer")
+      ->required()
+      ->type_name("FILE.pvb");
+  command->add_option("--passes", options->passes, kPassesHelp)->type_name("FIRST:LAST");
+  command->add_option("--camera", options->camera, "which camera, where the dump has several")
+      ->type_name("NAME");
+  command->add_option("--epsilon", options->epsilon, "of the relative error: guards dark places")
+      ->capture_default_str();
+  command
+      ->add_option("--max-memory", options->max_memory,
+                   "what it may take, 500M or 4G: shares less, or refuses (default no limit)")
+      ->transform(CLI::AsSizeValue(false))
+      ->type_name("SIZE");
+  add_parameter_lists(*command, options->lists);
+  add_common(*command, options->common);
+  set_example(*command, "psf tune scene.pvb --delta 0.2,0.33,0.5 --json tuned.json");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace psf::tools
