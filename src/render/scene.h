@@ -49,7 +49,7 @@ struct Mesh {
 
 struct Sphere {
   std::string name;
-  Vec3 center;
+  Vec3 center{0, 0, 0};
   float radius = 1;  // front is outside
   int material = 0;
 };
@@ -60,7 +60,7 @@ enum class LightKind : std::uint8_t { point, directional, spot };
 struct Light {
   std::string name;
   LightKind kind = LightKind::point;
-  Vec3 position;             // point, spot
+  Vec3 position{0, 0, 0};    // point, spot; Vec3() would leave it to chance, and the hash with it
   Vec3 direction{0, 0, -1};  // unit, in which the light travels: directional, spot
   Rgb intensity{1, 1,
                 1};  // point, spot: radiant intensity; directional: irradiance on a facing surface

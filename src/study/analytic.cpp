@@ -8,6 +8,7 @@
 #include "filter/radius.h"
 #include "formats/metadata.h"
 #include "formats/writer.h"
+#include "study/theory.h"
 
 namespace psf::study {
 namespace {
@@ -16,13 +17,6 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kWaveNumber = 4 * kPi, kAmplitude = 0.5;
 constexpr double kLeft = 1, kRight = 3, kEdge = 0.5;
 constexpr int kSteps = 32;  // of the midpoint rule, for the mean over a pixel
-
-// The share of a disk of radius 1 that lies right of the line at -s.
-double share_right(double s) {
-  if (s >= 1) return 1;
-  if (s <= -1) return 0;
-  return 0.5 + (s * std::sqrt(1 - s * s) + std::asin(s)) / kPi;
-}
 
 template <class Function>
 double mean_over_pixel(std::size_t column, const Function& function) {
@@ -135,16 +129,6 @@ double Analytic::bias_sq(const filter::Radius& radius, std::uint64_t n, double e
     sum += bias * bias / (truth * truth + epsilon);
   }
   return sum / static_cast<double>(inside.width);
-}
-
-double Analytic::relative_variance(const filter::Radius& radius, std::uint64_t n) {
-  // Pass k has the variance of one record over the records in its ball.
-  double sum = 0;
-  for (std::uint64_t pass = 1; pass <= n; ++pass) {
-    const double r = filter::radius_scale(radius, static_cast<double>(pass));
-    sum += 1 / (kPi * r * r);
-  }
-  return sum / static_cast<double>(n) / static_cast<double>(n);
 }
 
 double fitted_slope(const std::vector<double>& n, const std::vector<double>& values) {

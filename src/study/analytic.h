@@ -40,8 +40,6 @@ class Analytic {
   // share of its ball.
   [[nodiscard]] double bias_sq(const filter::Radius& radius, std::uint64_t n, double epsilon,
                                const Rectangle& inside) const;
-  // Proportional to what `variance` should be while balls hold many records.
-  [[nodiscard]] static double relative_variance(const filter::Radius& radius, std::uint64_t n);
 
  private:
   [[nodiscard]] double f(double x) const;

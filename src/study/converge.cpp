@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "filter/blocks.h"
 #include "study/filter_dump.h"
 #include "study/many_dump.h"
 #include "study/variants.h"
@@ -146,7 +147,12 @@ class Study {
     }
     for (std::size_t k = 0; k < rows; ++k) {
       ConvergeSeries& series = series_[k < count ? group.rows[first + k] + 1 : 0];
-      for (std::size_t t = 0; t < c_.n.size(); ++t) finish(cells[k][t], c_.n[t], series.points[t]);
+      for (std::size_t t = 0; t < c_.n.size(); ++t) {
+        finish(cells[k][t], c_.n[t], series.points[t]);
+        if (series.parameters) {
+          series.points[t].theory = theory(dumps_.front(), *series.parameters, c_.n[t]);
+        }
+      }
     }
   }
 
@@ -161,22 +167,45 @@ class Study {
     point.radius = cell.radius;
   }
 
-  // The set alone, as psf filter runs it.
+  // The set alone, as psf filter runs it: one run over all passes tells the time of every n at
+  // which blocks end; the others have runs of their own.
   void measure_time(std::size_t set) {
+    const filter::Parameters& parameters = c_.sets[set];
+    const std::uint64_t all = c_.n.back();
+    const Dump& dump = dumps_.front();
+    std::vector<ConvergePoint>& points = series_[set + 1].points;
     FilterRun run;
-    run.parameters = c_.sets[set];
-    run.passes.last = static_cast<std::size_t>(c_.n.back());
-    run.snapshots = c_.n;
+    run.parameters = parameters;
+    run.passes.last = static_cast<std::size_t>(all);
     run.max_memory = c_.max_memory;
     run.on_progress = [this](std::uint64_t done, std::uint64_t total) { progress(done, total); };
+    std::vector<std::size_t> places;
+    for (std::size_t t = 0; t < c_.n.size(); ++t) {
+      const filter::Blocks blocks(parameters.block, dump.pass_bounds(), 0, c_.n[t]);
+      if (c_.n[t] == all || blocks.is_whole(blocks.count() - 1)) {
+        run.snapshots.push_back(c_.n[t]);
+        places.push_back(t);
+      } else {
+        FilterRun part = run;
+        part.passes.last = static_cast<std::size_t>(c_.n[t]);
+        part.snapshots.clear();
+        part.on_progress = nullptr;
+        points[t].filter_seconds = seconds_of(part);
+      }
+    }
     std::size_t place = 0;
     const auto start = Clock::now();
     run.on_snapshot = [&](std::uint64_t, std::span<const CameraPictures>) {
-      series_[set + 1].points[place++].filter_seconds =
+      points[places[place++]].filter_seconds =
           std::chrono::duration<double>(Clock::now() - start).count();
     };
-    static_cast<void>(filter_dump(dumps_.front(), run));
+    static_cast<void>(filter_dump(dump, run));
     ++done_;
+  }
+  [[nodiscard]] double seconds_of(const FilterRun& run) const {
+    const auto start = Clock::now();
+    static_cast<void>(filter_dump(dumps_.front(), run));
+    return std::chrono::duration<double>(Clock::now() - start).count();
   }
 
   void progress(std::uint64_t done, std::uint64_t total) const {

@@ -15,6 +15,7 @@
 #include "study/metrics.h"
 #include "study/reference.h"
 #include "study/replicates.h"
+#include "study/theory.h"
 
 namespace psf::study {
 
@@ -23,6 +24,7 @@ struct ConvergePoint {
   std::uint64_t n = 0;  // passes
   Metrics metrics;      // means over the replicates
   ErrorParts parts;
+  Theory theory;         // of the first replicate; all 0 without filter
   double neighbors = 0;  // M(n): of a query of all blocks so far, the mean over the replicates
   double radius = 0;     // of the last block, pixels
   std::optional<double> filter_seconds;  // of a run of its own over n passes of the first replicate

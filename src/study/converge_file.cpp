@@ -26,9 +26,14 @@ Json slopes(const ConvergeSeries& series, std::size_t place) {
     return number_or_null(
         local_slope(static_cast<double>(a.n), value(a), static_cast<double>(b.n), value(b)));
   };
-  return {{"relMSE", slope([](const ConvergePoint& p) { return p.metrics[kError]; })},
-          {"bias_sq", slope([](const ConvergePoint& p) { return p.parts.bias_sq; })},
-          {"variance", slope([](const ConvergePoint& p) { return p.parts.variance; })}};
+  using Point = const ConvergePoint&;
+  Json json = {{"relMSE", slope([](Point p) { return p.metrics[kError]; })},
+               {"bias_sq", slope([](Point p) { return p.parts.bias_sq; })},
+               {"variance", slope([](Point p) { return p.parts.variance; })}};
+  json["theory_bias_sq_smooth"] = slope([](Point p) { return p.theory.bias_sq_smooth; });
+  json["theory_bias_sq_edge"] = slope([](Point p) { return p.theory.bias_sq_edge; });
+  json["theory_variance"] = slope([](Point p) { return p.theory.variance; });
+  return json;
 }
 
 Json seconds(const ConvergeReport& report, const ConvergePoint& point, bool filtered) {

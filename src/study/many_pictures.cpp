@@ -54,7 +54,8 @@ std::uint32_t ManyPictures::add_filtered(const filter::Records& records, std::si
   const std::size_t group = begin / kTogether, first = begin % kTogether;
   double* sum = &filtered_[(group * paths_.size() + records.pixel[i]) * kTogether * 3];
   // What is not asked for is 0, so that all loops have one length.
-  Rgb values[kTogether] = {};
+  Rgb values[kTogether];
+  std::fill(values, values + kTogether, Rgb(0, 0, 0));  // they are born with any value
   float check = 0;
   for (std::size_t k = 0; k < count; ++k) {
     values[first + k] = Rgb(alpha.x * c_bar[k].x, alpha.y * c_bar[k].y, alpha.z * c_bar[k].z);

@@ -29,6 +29,21 @@ std::string read(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+// Leaves bytes where the next function has its variables.
+void litter(unsigned char with) {
+  volatile unsigned char stack[1 << 16];
+  for (auto& byte : stack) byte = with;
+}
+
+TEST_CASE("a sample scene has the same hash every time that it is loaded", "[load][hash]") {
+  for (const fs::path& path : sample_scenes()) {
+    litter(0x11);
+    const std::string first = load_scene(path.string()).hash;
+    litter(0x77);
+    CHECK(load_scene(path.string()).hash == first);
+  }
+}
+
 TEST_CASE("every sample scene loads without a warning and has light and camera",
           "[load][samples]") {
   const auto paths = sample_scenes();

@@ -85,6 +85,21 @@ TEST_CASE("Many radii on a dump equal separate runs, at every number of passes")
   }
 }
 
+TEST_CASE("Radii that share no traversal equal separate runs too") {
+  const TempFolder folder;
+  const std::string path = folder / "a.pvb";
+  write_dump(path, random_records(900, 14, 0.2, kOne), {kOne, {300, 300, 300}, {}});
+  const study::Dump dump(path);
+  for (const auto estimator : {filter::Estimator::average, filter::Estimator::hash,
+                               filter::Estimator::control, filter::Estimator::adaptive}) {
+    study::ManyRun run = many_run("2passes");
+    run.parameters.estimator = estimator;
+    if (estimator == filter::Estimator::average) run.parameters.iterations = 2;
+    INFO("estimator " << static_cast<int>(estimator));
+    check(path, run, study::filter_many(dump, run), 3);
+  }
+}
+
 TEST_CASE("Many radii on chosen passes equal separate runs") {
   const TempFolder folder;
   const std::string path = folder / "a.pvb";

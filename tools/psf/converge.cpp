@@ -158,7 +158,7 @@ std::vector<study::SlopeCheck> check_slopes(const study::Analytic& scene,
       bias_sq.push_back(point.parts.bias_sq);
       variance.push_back(point.parts.variance);
       bias_sq_theory.push_back(scene.bias_sq(radius, point.n, epsilon, inside));
-      variance_theory.push_back(study::Analytic::relative_variance(radius, point.n));
+      variance_theory.push_back(point.theory.variance);
     }
     const auto add = [&](const char* quantity, const std::vector<double>& measured,
                          const std::vector<double>& theory) {
@@ -261,7 +261,8 @@ void add_converge(CLI::App& app) {
   command
       ->add_option("--render-json", options->render_figures,
                    "what psf-render --json wrote: counts the render's time into speed-ups")
-      ->type_name("FILE")
+      ->type_name("FILE[,FILE...]")
+      ->delimiter(',')
       ->allow_extra_args(false);
   command->add_flag("--all-metrics", options->all_metrics, "SSIM and FLIP too: slower");
   command->add_flag("--no-times", options->no_times,

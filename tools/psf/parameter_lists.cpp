@@ -38,9 +38,9 @@ std::optional<Amount> parse_amount(const std::string& text) {
   return Amount{*number, text.substr(digits)};
 }
 
-// As few digits as tell it from its neighbours in a range: 0.3, not 0.30000000000000004.
+// To be read: 0.3, not 0.30000000000000004, and 11.314px for 8px times the root of 2.
 std::string number_text(double value) {
-  return fmt::format("{:.9g}", value);
+  return fmt::format("{:.5g}", value);
 }
 
 std::vector<std::string> range_values(const std::string& text, const char* option) {

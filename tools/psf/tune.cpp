@@ -78,15 +78,15 @@ void print(const study::Tuning& tuning, const study::Dump& dump) {
                as_options(row.parameters));
   }
   const study::TuneRow& best = tuning.rows[tuning.best];
-  fmt::print("unfiltered {:.4g}\nchosen: {}, which gains about {:.1f} times\n", tuning.unfiltered,
-             as_options(best.parameters), tuning.unfiltered / best.error);
+  fmt::print("{:>10.4g}  unfiltered\nchosen: {}\n", tuning.unfiltered, as_options(best.parameters));
   const std::size_t close = alike(tuning);
   if (close == 1) {
     fmt::print("sure: every other set is at least {} standard errors worse\n", study::kAlike);
   } else {
     fmt::print(
-        "not sure: {} of {} sets are within {} standard errors of the best; more passes "
-        "would tell\n",
+        "not sure: {} of {} sets are within {} standard errors of the least error; chosen is the "
+        "one "
+        "of them with the fewest neighbours\n",
         close, tuning.rows.size(), study::kAlike);
   }
   if (tuning.parts < 4) {
@@ -105,7 +105,7 @@ void print(const study::Tuning& tuning, const study::Dump& dump) {
   }
 }
 
-study::Json to_json(const study::Tuning& tuning, const study::TuneRow& row) {
+study::Json to_json(const study::TuneRow& row) {
   return {{"parameters", study::to_json(row.parameters)},
           {"error", row.error},
           {"standard_error", row.standard_error},
@@ -113,8 +113,7 @@ study::Json to_json(const study::Tuning& tuning, const study::TuneRow& row) {
           {"variance", row.variance},
           {"neighbors", row.neighbors},
           {"sigmas_above_least", row.distance},
-          {"alike", row.distance < study::kAlike},
-          {"gain", study::number_or_null(tuning.unfiltered / row.error)}};
+          {"alike", row.distance < study::kAlike}};
 }
 
 void run(const TuneOptions& options) {
@@ -141,7 +140,7 @@ void run(const TuneOptions& options) {
   print(tuning, dump);
   if (options.common.json.empty()) return;
   study::Json rows = study::Json::array();
-  for (const study::TuneRow* row : by_error(tuning)) rows.push_back(to_json(tuning, *row));
+  for (const study::TuneRow* row : by_error(tuning)) rows.push_back(to_json(*row));
   const study::Json json = {{"kind", "tune"},
                             {"format", study::kStudyFormat},
                             {"version", kVersion},
@@ -153,7 +152,7 @@ void run(const TuneOptions& options) {
                             {"independent_paths", tuning.has_independent_paths},
                             {"parts", tuning.parts},
                             {"alike", alike(tuning)},
-                            {"best", to_json(tuning, tuning.rows[tuning.best])},
+                            {"best", to_json(tuning.rows[tuning.best])},
                             {"rows", rows}};
   core::write_text_file(options.common.json, json.dump(1) + "\n");
   fmt::print("psf filter --tuned {} takes the choice\n", options.common.json);
