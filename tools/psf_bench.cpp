@@ -11,5 +11,6 @@ int main(int argc, char** argv) {
   psf::tools::set_example(app, "psf-bench files");
   psf::bench::add_files(app);
   psf::bench::add_filter(app);
+  psf::bench::add_sweep(app);
   return psf::tools::run_tool(app, argc, argv);
 }

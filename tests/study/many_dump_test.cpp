@@ -88,7 +88,7 @@ TEST_CASE("Many radii on a dump equal separate runs, at every number of passes")
 TEST_CASE("Radii that share no traversal equal separate runs too") {
   const TempFolder folder;
   const std::string path = folder / "a.pvb";
-  write_dump(path, random_records(900, 14, 0.2, kOne), {kOne, {300, 300, 300}, {}});
+  write_dump(path, random_records(900, 14, 0, kOne), {kOne, {300, 300, 300}, {}});
   const study::Dump dump(path);
   for (const auto estimator : {filter::Estimator::average, filter::Estimator::hash,
                                filter::Estimator::control, filter::Estimator::adaptive}) {

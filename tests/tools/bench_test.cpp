@@ -63,3 +63,18 @@ TEST_CASE("psf-bench tells wrong use in one line with the right code") {
   CHECK(scene.code == 3);
   CHECK(scene.err.find("nowhere.json") != std::string::npos);
 }
+
+TEST_CASE("psf-bench sweep measures pairs of r0 and delta against one run") {
+  const TempFolder folder;
+  const std::string dump = folder / "a.pvb", json = folder / "bench.json";
+  REQUIRE(run("psf-render " PSF_SOURCE_DIR "/sample_data/cornell.json --quiet --size 32x32 "
+              "--passes 4 -o " +
+              dump)
+              .code == 0);
+  const Outcome outcome = run("psf-bench sweep " + dump + " --r0 4px --repeat 1 --json " + json);
+  INFO(outcome.err);
+  REQUIRE(outcome.code == 0);
+  const auto rows = rows_of(nlohmann::json::parse(read_text(json)));
+  CHECK(rows.at("pairs_4px").at("median") > 0);
+  CHECK(rows.at("difference_4px").at("median") < 1e-5);
+}

@@ -22,7 +22,8 @@ const std::string kGrid = " --r0 2px,2.8px,4px,5.7px,8px,11.3px,16px,22.6px,32px
 // Error of the choice over the least error of the grid.
 double ratio(const std::string& scene, const std::string& reference) {
   const TempFolder folder;
-  Outcome outcome = run("psf-render " + kSamples + scene + ".json --quiet -o " + folder / "a.pvb");
+  Outcome outcome = run("psf-render " + kSamples + scene +
+                        ".json --quiet --size 256x256 --passes 16 -o " + folder / "a.pvb");
   REQUIRE(outcome.code == 0);
   outcome = run("psf sweep " + folder / "a.pvb --quiet --reference " + reference + kGrid + " -o " +
                 folder / "out");
@@ -33,7 +34,8 @@ double ratio(const std::string& scene, const std::string& reference) {
   REQUIRE(outcome.code == 0);
   const json chosen = json::parse(read_text(folder / "t.json")).at("best").at("parameters");
   double least = 1e9, of_choice = 0;
-  for (const json& row : json::parse(read_text(folder / "out/sweep.json")).at("rows")) {
+  const json sweep = json::parse(read_text(folder / "out/sweep.json"));
+  for (const json& row : sweep.at("rows")) {
     const double error = row.at("metrics").at("relMSE");
     least = std::min(least, error);
     if (row.at("parameters") == chosen) of_choice = error;
@@ -54,8 +56,8 @@ TEST_CASE("The choice of psf tune is near the best of the grid on every sample s
   for (const std::string scene : {"textured", "two-rooms", "materials", "fence", "corner"}) {
     const TempFolder folder;
     const Outcome outcome =
-        run("psf-render " + kSamples + scene + ".json --quiet --passes 1024 --seed 77 --image " +
-            folder / "r.exr");
+        run("psf-render " + kSamples + scene +
+            ".json --quiet --size 256x256 --passes 1024 --seed 77 --image " + folder / "r.exr");
     REQUIRE(outcome.code == 0);
     INFO(scene);
     CHECK(ratio(scene, folder / "r.exr") <= 1.15);

@@ -7,5 +7,6 @@ namespace psf::bench {
 
 void add_files(CLI::App& app);
 void add_filter(CLI::App& app);
+void add_sweep(CLI::App& app);
 
 }  // namespace psf::bench
