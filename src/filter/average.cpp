@@ -5,9 +5,9 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "filter/adaptive.h"
-#include "filter/control.h"
-#include "filter/hash.h"
+#include "filter/estimators/adaptive.h"
+#include "filter/estimators/control.h"
+#include "filter/estimators/hash.h"
 #include "filter/inputs.h"
 #include "filter/problem.h"
 #include "filter/radius.h"

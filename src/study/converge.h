@@ -12,8 +12,8 @@
 
 #include "filter/parameters.h"
 #include "study/dump.h"
-#include "study/metrics.h"
-#include "study/reference.h"
+#include "study/metrics/metrics.h"
+#include "study/metrics/reference.h"
 #include "study/replicates.h"
 #include "study/theory.h"
 

@@ -10,7 +10,7 @@
 
 #include "filter/parameters.h"
 #include "study/dump.h"
-#include "study/metrics.h"
+#include "study/metrics/metrics.h"
 #include "study/passes.h"
 
 namespace psf::study {

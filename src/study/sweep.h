@@ -12,9 +12,9 @@
 #include "core/vec.h"
 #include "filter/parameters.h"
 #include "study/dump.h"
-#include "study/metrics.h"
+#include "study/metrics/metrics.h"
+#include "study/metrics/reference.h"
 #include "study/passes.h"
-#include "study/reference.h"
 
 namespace psf::study {
 

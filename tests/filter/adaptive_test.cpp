@@ -1,12 +1,12 @@
 // [adaptive]: balls stop where contributions no longer agree, and only there.
-#include "filter/adaptive.h"
+#include "filter/estimators/adaptive.h"
 
 #include <cmath>
 #include <random>
 
 #include "catch.h"
 #include "estimator_case.h"
-#include "filter/agreement.h"
+#include "filter/estimators/agreement.h"
 
 namespace psf {
 namespace {

@@ -1,5 +1,5 @@
 // [control] is unbiased at any radius, whatever the contributions; [average] is not.
-#include "filter/control.h"
+#include "filter/estimators/control.h"
 
 #include <cmath>
 #include <random>

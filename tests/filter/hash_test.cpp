@@ -8,8 +8,8 @@
 
 #include "catch.h"
 #include "estimator_case.h"
-#include "filter/hash_cells.h"
-#include "filter/hash_key.h"
+#include "filter/estimators/hash_cells.h"
+#include "filter/estimators/hash_key.h"
 #include "filter/weights.h"
 
 namespace psf {

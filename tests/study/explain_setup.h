@@ -5,8 +5,8 @@
 #include <string>
 
 #include "filter_dump_setup.h"
-#include "study/explain.h"
-#include "study/explain_whence.h"
+#include "study/explain/explain.h"
+#include "study/explain/explain_whence.h"
 
 namespace psf::tests {
 

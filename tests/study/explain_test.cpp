@@ -1,6 +1,6 @@
 // An explained pixel: its numbers are those of the filtered picture, its refusals those that the
 // filter counts.
-#include "study/explain.h"
+#include "study/explain/explain.h"
 
 #include <limits>
 

@@ -1,6 +1,6 @@
 // Whence a pixel's light came: what a term's absence and presence would give, and leaks that were
 // put there are found.
-#include "study/explain_whence.h"
+#include "study/explain/explain_whence.h"
 
 #include <array>
 #include <optional>

@@ -9,8 +9,8 @@
 #include "../temp_folder.h"
 #include "catch.h"
 #include "metric_pictures.h"
-#include "study/metric_ssim.h"
-#include "study/reference.h"
+#include "study/metrics/metric_ssim.h"
+#include "study/metrics/reference.h"
 
 using psf::Rgb;
 using namespace psf::study;

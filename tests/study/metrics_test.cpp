@@ -1,5 +1,5 @@
 // The metrics of single pixels, and means, against values worked out by hand.
-#include "study/metrics.h"
+#include "study/metrics/metrics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "core/parallel.h"
 #include "formats/error.h"
 #include "metric_pictures.h"
-#include "study/reference.h"
+#include "study/metrics/reference.h"
 
 using psf::Rgb;
 using namespace psf::study;

@@ -1,6 +1,6 @@
 // The report's file: pictures survive it, texts cannot break out of it, and what is no study is
 // refused.
-#include "study/report.h"
+#include "study/report/report.h"
 
 #include <half.h>
 #include <zlib.h>
@@ -13,8 +13,8 @@
 #include "../tools/report_sample.h"
 #include "catch.h"
 #include "core/error.h"
-#include "study/report_picture.h"
-#include "study/report_study.h"
+#include "study/report/report_picture.h"
+#include "study/report/report_study.h"
 #include "temp_folder.h"
 
 using namespace psf::tests;

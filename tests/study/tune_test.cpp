@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "study/analytic.h"
 #include "study/many_dump.h"
-#include "study/reference.h"
+#include "study/metrics/reference.h"
 #include "temp_folder.h"
 
 namespace psf {

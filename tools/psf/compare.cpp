@@ -16,8 +16,8 @@
 #include "core/parallel.h"
 #include "film/image.h"
 #include "formats/error.h"
-#include "study/error_picture.h"
-#include "study/reference.h"
+#include "study/metrics/error_picture.h"
+#include "study/metrics/reference.h"
 #include "verbs.h"
 
 namespace psf::tools {

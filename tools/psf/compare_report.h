@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "study/errors.h"
-#include "study/metrics.h"
+#include "study/metrics/errors.h"
+#include "study/metrics/metrics.h"
 #include "text.h"
 
 namespace psf::tools {

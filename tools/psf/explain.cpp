@@ -16,7 +16,7 @@
 #include "filter_options.h"
 #include "option_values.h"
 #include "pass_range.h"
-#include "study/explain_ply.h"
+#include "study/explain/explain_ply.h"
 #include "verbs.h"
 
 namespace psf::tools {

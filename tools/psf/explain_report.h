@@ -5,7 +5,7 @@
 #include <string>
 
 #include "study/dump.h"
-#include "study/explain_whence.h"
+#include "study/explain/explain_whence.h"
 
 namespace psf::tools {
 

@@ -1,5 +1,5 @@
 // psf export: writes a dump in the formats of other programs.
-#include "study/export.h"
+#include "study/export/export.h"
 
 #include <fmt/format.h>
 

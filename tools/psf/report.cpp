@@ -1,5 +1,5 @@
 // psf report: a page to look at, from the folders of sweeps and convergence studies.
-#include "study/report.h"
+#include "study/report/report.h"
 
 #include <fmt/format.h>
 

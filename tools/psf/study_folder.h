@@ -12,7 +12,7 @@
 #include "core/vec.h"
 #include "filter/parameters.h"
 #include "study/dump.h"
-#include "study/metrics.h"
+#include "study/metrics/metrics.h"
 #include "study/passes.h"
 
 namespace psf::tools {

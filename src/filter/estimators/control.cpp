@@ -1,0 +1,201 @@
+#include "filter/estimators/control.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "core/error.h"
+#include "filter/estimators/scramble.h"
+#include "filter/inputs.h"
+#include "filter/orphans.h"
+#include "filter/problem.h"
+
+namespace psf::filter {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// Of all cameras.
+std::uint64_t pixel_of(const Records& records, std::uint32_t i) {
+  const std::uint64_t camera = records.camera.empty() ? 0 : records.camera[i];
+  return camera << 32 | records.pixel[i];
+}
+
+// The halves are of pixels, other ones in every block: all records of a pixel, shaded or not, have
+// the same control, whose noise then cancels in the pixel but for K times its number of sources.
+unsigned half_of(const Records& records, const Block& block, std::uint32_t i) {
+  return scramble(~scramble(block.first_path) ^ pixel_of(records, i)) & 1;
+}
+
+// Whether a record of this pixel is a source, with probability 1 / k: in k passes that follow each
+// other it is one of them, any of them, in every pixel by itself. So g_i, which is of other pixels,
+// is independent of it, as it would not be of a lattice's choice; and a pixel has as many sources
+// as any other.
+bool is_chosen(std::uint64_t pixel, std::uint64_t pass, std::uint32_t k) {
+  const std::uint64_t coin = scramble(scramble(pass / k) ^ pixel);
+  return pass % k == ((coin >> 32) * k) >> 32;
+}
+
+// beta of a control with noise: what is left of 1 where `share` of the variance of a mean over
+// `count` counts. Moments of luminance.
+float shrunk(double share, double mean, double mean_sq, std::uint32_t count) {
+  if (count < 2 || !(mean * mean > 0)) return share > 0 ? 0.0f : 1.0f;
+  const double variance = std::max(0.0, mean_sq - mean * mean) / (count - 1);
+  return static_cast<float>(std::max(0.0, 1 - share * variance / (mean * mean)));
+}
+
+class Control {
+ public:
+  Control(const Records& records, std::span<const float> radius, const Block& block,
+          const Parameters& parameters)
+      : r_(records), radius_(radius), block_(block), p_(parameters) {}
+
+  Average run() {
+    const auto start = Clock::now();
+    choose();
+    result_.c_bar.assign(r_.size(), Rgb(0, 0, 0));
+    result_.neighbors.assign(r_.size(), 0);
+    result_.statistics.seconds_index = seconds_since(start);
+    if (k_ == 1) {
+      for (const std::uint32_t i : roles_.queries) {
+        result_.c_bar[i] = r_.contribution[i];
+        result_.neighbors[i] = 1;
+      }
+    } else if (k_ > 1) {
+      for (const unsigned half : {0u, 1u}) set_controls(half);
+      combine();
+    }
+    for (const std::uint32_t i : roles_.queries) result_.statistics.add_query(result_.neighbors[i]);
+    result_.roles = std::move(roles_.of);
+    return std::move(result_);
+  }
+
+ private:
+  // Who is a source, and k_, one over its probability; 0 where the block has none to begin with.
+  void choose() {
+    Parameters all = p_;
+    all.sources = 1;
+    Statistics& counts = result_.statistics;
+    roles_ = find_roles(r_, block_, all, counts);
+    if (counts.sources == 0) {
+      for (Role& role : roles_.of) role = role == Role::query ? Role::left_out : role;
+      counts.without_source = counts.queries;
+      return;
+    }
+    k_ = std::uint64_t{shade_rate(counts.queries, counts.sources)} * p_.sources;
+    if (p_.sources == 1) return;
+    std::vector<std::uint32_t> chosen;
+    std::uint64_t pixels = 0;
+    for (const CameraView& camera : block_.cameras) {
+      pixels += std::uint64_t{camera.width} * camera.height;
+    }
+    for (const std::uint32_t i : roles_.sources) {
+      if (is_chosen(pixel_of(r_, i), (block_.first_path + i) / pixels, p_.sources)) {
+        chosen.push_back(i);
+      } else {
+        roles_.of[i] = Role::query;
+      }
+    }
+    roles_.sources = std::move(chosen);
+    counts.sources = roles_.sources.size();
+  }
+
+  // Of the noise of a control, what does not cancel among the records of a pixel, since the block
+  // has not k_ passes for each of its sources.
+  [[nodiscard]] double noise_share() const {
+    const double k = static_cast<double>(k_), passes = std::max(1.0, block_.samples_per_pixel);
+    const double rest = std::fmod(passes, k);
+    return rest * (k - rest) / (passes * (k - 1));
+  }
+
+  // beta g_i, into c_bar, of the records that are not of `half`, from the sources that are.
+  void set_controls(unsigned half) {
+    const auto start = Clock::now();
+    Roles roles;
+    roles.of = roles_.of;
+    for (const std::uint32_t i : roles_.queries) {
+      const bool source = roles.of[i] == Role::source, inside = half_of(r_, block_, i) == half;
+      if (source && inside) roles.sources.push_back(i);
+      if (source && !inside) roles.of[i] = Role::query;
+      // Engines want sources among the queries; what they get is not looked at.
+      if ((source && inside) || (!inside && radius_[i] * radius_[i] > 0))
+        roles.queries.push_back(i);
+    }
+    if (roles.sources.empty()) return;
+    const Weights weights(r_, p_.weights);
+    const Problem problem{r_, roles, radius_, weights, {}};
+    const std::unique_ptr<Engine> engine = make_engine(p_.search, problem);
+    result_.statistics.seconds_index += seconds_since(start);
+    const double share = noise_share();
+
+    const auto filter_start = Clock::now();
+    std::vector<Rgb> values(r_.contribution.begin(), r_.contribution.end());
+    if (p_.demodulate) values = demodulated(r_, roles);
+    std::vector<Rgb> means(r_.size()), moments(r_.size());
+    std::vector<std::uint32_t> counts(r_.size());
+    Statistics unused;  // of other queries too
+    engine->average(values, false, means, counts, unused);
+    for (const std::uint32_t j : roles.sources) {
+      const float y = luminance(values[j]);
+      values[j] = Rgb(y, y * y, 0);
+    }
+    engine->average(values, false, moments, counts, unused);
+    for (const std::uint32_t i : roles.queries) {
+      if (half_of(r_, block_, i) == half) continue;
+      const std::uint32_t count = counts[i] > 0 ? counts[i] : kOrphanSources;
+      const float beta = shrunk(share, double{moments[i].x}, double{moments[i].y}, count);
+      const Rgb g = p_.demodulate ? remodulate(means[i], r_.reflectance[i]) : means[i];
+      result_.neighbors[i] = counts[i];
+      result_.c_bar[i] = g * beta;
+    }
+    result_.statistics.seconds_filter += seconds_since(filter_start);
+  }
+
+  // c'_i from g_i.
+  void combine() {
+    const auto k = static_cast<float>(k_);
+    for (const std::uint32_t i : roles_.queries) {
+      result_.statistics.orphans += result_.neighbors[i] == 0 ? 1u : 0u;
+      if (roles_.of[i] != Role::source) continue;
+      const Rgb& g = result_.c_bar[i];
+      result_.c_bar[i] = g + (r_.contribution[i] - g) * k;
+    }
+  }
+
+  const Records& r_;
+  std::span<const float> radius_;
+  const Block& block_;
+  const Parameters& p_;
+  Roles roles_;
+  std::uint64_t k_ = 0;
+  Average result_;
+};
+
+}  // namespace
+
+std::uint32_t shade_rate(std::uint64_t queries, std::uint64_t shaded) {
+  const double ratio = static_cast<double>(queries) / static_cast<double>(shaded);
+  if (shaded == queries) return 1;
+  const double k = std::max(2.0, std::round(ratio));
+  // A lattice over few records, or one that the borders of surfaces cut, is off by chance.
+  const double tolerance = 0.02 + 4 / std::sqrt(static_cast<double>(shaded));
+  if (std::abs(ratio / k - 1) <= tolerance) return static_cast<std::uint32_t>(k);
+  throw Error(
+      ErrorCode::bad_input,
+      fmt::format("--estimator control: one record in {:.3g} is shaded, but the probability "
+                  "must be one over a whole number; render with one --shade-rate",
+                  ratio));
+}
+
+Average control(const Records& records, std::span<const float> radius, const Block& block,
+                const Parameters& parameters) {
+  return Control(records, radius, block, parameters).run();
+}
+
+}  // namespace psf::filter

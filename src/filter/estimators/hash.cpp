@@ -1,0 +1,149 @@
+#include "filter/estimators/hash.h"
+
+#include <vector>
+
+#include "core/interrupt.h"
+#include "core/parallel.h"
+#include "filter/estimators/hash_cells.h"
+#include "filter/orphans.h"
+#include "filter/sum.h"
+
+namespace psf::filter {
+namespace {
+
+constexpr std::size_t kKeyGrain = 1024, kCellGrain = 256;
+// An orphan looks into cells up to 2^8 times as long; then it is no question of place any more.
+constexpr int kCoarsest = 8;
+
+// Records and the cells that they share; `members` of cells are places in `records`.
+struct Grid {
+  std::vector<std::uint32_t> records;
+  Cells cells;
+};
+
+class HashEngine final : public Engine {
+ public:
+  HashEngine(search::Kind kind, const Problem& problem, double scale, std::uint64_t first_path)
+      : p_(problem),
+        kind_(kind),
+        keys_(problem.records, problem.weights.terms(), scale, first_path) {
+    for (const std::uint32_t i : p_.roles.queries) {
+      (has_cell(i) ? grid_.records : alone_).push_back(i);
+    }
+    fill(grid_, 0);
+  }
+
+  void average(std::span<const Rgb> values, bool, std::span<Rgb> out,
+               std::span<std::uint32_t> neighbors, Statistics& statistics) override {
+    apply(grid_, values, out, neighbors);
+    std::vector<std::uint32_t> orphans;
+    for (const std::uint32_t i : alone_) {
+      neighbors[i] = p_.roles.of[i] == Role::source ? 1 : 0;
+      out[i] = values[i];
+    }
+    for (const std::uint32_t i : p_.roles.queries) {
+      statistics.add_query(neighbors[i]);
+      if (neighbors[i] == 0) orphans.push_back(i);
+    }
+    if (!orphans.empty()) adopt_all(std::move(orphans), values, out, statistics);
+  }
+
+ private:
+  // As chi has it: where r_i^2 is 0, in float, a record is alone.
+  [[nodiscard]] bool has_cell(std::uint32_t i) const { return p_.radius[i] * p_.radius[i] > 0; }
+
+  void fill(Grid& grid, int coarser) const {
+    core::throw_if_interrupted("no picture was written");
+    std::vector<CellKey> keys(grid.records.size());
+    core::parallel_for(keys.size(), kKeyGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) {
+        keys[k] = keys_(grid.records[k], p_.radius[grid.records[k]], coarser);
+      }
+    });
+    grid.cells = group_equal(keys);
+  }
+
+  // out[i] and neighbors[i] of everyone in the grid; neighbors[i] is 0, and out[i] as it was, where
+  // the cell has no source.
+  void apply(const Grid& grid, std::span<const Rgb> values, std::span<Rgb> out,
+             std::span<std::uint32_t> neighbors) const {
+    core::parallel_for(grid.cells.count(), kCellGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t cell = begin; cell < end; ++cell) {
+        Sum sum;
+        std::uint32_t count = 0;
+        for (const std::uint32_t member : grid.cells[cell]) {
+          const std::uint32_t j = grid.records[member];
+          if (p_.roles.of[j] != Role::source) continue;
+          sum.add(values[j], 1);
+          ++count;
+        }
+        for (const std::uint32_t member : grid.cells[cell]) {
+          const std::uint32_t i = grid.records[member];
+          neighbors[i] = count;
+          if (count > 0) out[i] = sum.over(count);
+        }
+      }
+    });
+  }
+
+  // Coarser cells first, then, for those who have nobody to pass the weights, the rule of balls.
+  void adopt_all(std::vector<std::uint32_t> orphans, std::span<const Rgb> values,
+                 std::span<Rgb> out, Statistics& statistics) const {
+    std::vector<Rgb> found(p_.records.size());
+    std::vector<std::uint32_t> counts(p_.records.size());
+    for (int coarser = 1; coarser <= kCoarsest && !orphans.empty(); ++coarser) {
+      Grid grid;
+      for (const std::uint32_t j : p_.roles.sources) {
+        if (has_cell(j)) grid.records.push_back(j);
+      }
+      for (const std::uint32_t i : orphans) {
+        if (has_cell(i)) grid.records.push_back(i);
+      }
+      fill(grid, coarser);
+      apply(grid, values, found, counts);
+      std::vector<std::uint32_t> rest;
+      for (const std::uint32_t i : orphans) {
+        if (has_cell(i) && counts[i] > 0) {
+          out[i] = found[i];
+          ++statistics.orphans;
+        } else {
+          rest.push_back(i);
+        }
+      }
+      orphans = std::move(rest);
+    }
+    adopt_nearest(orphans, values, out, statistics);
+  }
+
+  void adopt_nearest(std::span<const std::uint32_t> orphans, std::span<const Rgb> values,
+                     std::span<Rgb> out, Statistics& statistics) const {
+    if (orphans.empty()) return;
+    std::vector<Vec3> positions;
+    for (const std::uint32_t j : p_.roles.sources) positions.push_back(p_.records.position[j]);
+    const auto search =
+        search::make_search(kind_ == search::Kind::flann ? search::Kind::plain : kind_, positions);
+    std::vector<Statistics> parts(core::range_count(orphans.size(), kCellGrain));
+    core::parallel_for(orphans.size(), kCellGrain, [&](std::size_t begin, std::size_t end) {
+      core::throw_if_interrupted("no picture was written");
+      for (const std::uint32_t i : orphans.subspan(begin, end - begin)) {
+        out[i] = average_of(adopt(*search, p_, i), values, parts[begin / kCellGrain]);
+      }
+    });
+    for (const Statistics& part : parts) statistics += part;
+  }
+
+  const Problem& p_;
+  search::Kind kind_;
+  KeyMaker keys_;
+  Grid grid_;                         // of all queries
+  std::vector<std::uint32_t> alone_;  // queries with r_i = 0
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> make_hash(search::Kind kind, const Problem& problem, double scale,
+                                  std::uint64_t first_path) {
+  return std::make_unique<HashEngine>(kind, problem, scale, first_path);
+}
+
+}  // namespace psf::filter

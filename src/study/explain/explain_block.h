@@ -1,0 +1,56 @@
+// One block of an explanation: whom each of the pixel's paths averages, and whom it refuses.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "filter/average.h"
+#include "filter/orphans.h"  // and the search that adopt() wants
+#include "filter/roles.h"
+#include "filter/weights.h"
+#include "study/explain/explain.h"
+
+namespace psf::study {
+
+// Record numbers are those within the block, in ExplainedPath::vertex and ExplainedPair::vertex
+// too.
+class BlockExplainer {
+ public:
+  // Filters the whole block, as psf filter does. The records' columns and the parameters must
+  // outlive it.
+  BlockExplainer(const filter::Records& records, const filter::Block& block,
+                 const filter::Parameters& parameters);
+
+  // Path i, and its pairs, ascending. Thread-safe. Takes the pairs in the ball off `room`; throws
+  // Error{limit} where there is none left.
+  [[nodiscard]] ExplainedPath explain(std::uint32_t i, std::vector<ExplainedPair>& pairs,
+                                      std::atomic<std::int64_t>& room) const;
+
+  [[nodiscard]] bool is_source(std::uint32_t j) const {
+    return roles_.of[j] == filter::Role::source;
+  }
+  // What is averaged of it.
+  [[nodiscard]] Rgb value(std::uint32_t j) const;
+
+ private:
+  [[nodiscard]] bool is_disk(std::uint32_t i) const;
+  [[nodiscard]] PathFate fate_of(std::uint32_t i) const;
+  [[nodiscard]] double scale_of(std::uint32_t i, std::span<const ExplainedPair> pairs) const;
+  void find_pairs(std::uint32_t i, std::vector<ExplainedPair>& pairs,
+                  std::atomic<std::int64_t>& room) const;
+  void adopt(std::uint32_t i, std::vector<ExplainedPair>& pairs) const;
+
+  filter::Records records_;
+  const filter::Parameters& parameters_;
+  filter::Weights weights_;
+  filter::Roles roles_;
+  std::vector<float> radius_, area_;  // r_i, as chosen; A_j of [disk]
+  filter::Average average_;
+  std::vector<Rgb> before_;                 // c_bar of the iteration before the last
+  std::unique_ptr<search::Search> search_;  // over the sources
+};
+
+}  // namespace psf::study
