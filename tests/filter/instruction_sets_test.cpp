@@ -1,10 +1,14 @@
 // Every instruction set and any number of threads give the same bytes.
 #include "filter/engine/instruction_sets.h"
 
+#include <cmath>
+#include <cstring>
+
 #include "catch.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "engine_case.h"
+#include "filter/many_radii.h"
 
 namespace psf {
 namespace {
@@ -58,6 +62,34 @@ TEST_CASE("Every instruction set gives the same bytes") {
       const InstructionSetLimit limit(set);
       INFO(set << ", " << c.set.size() << " records");
       CHECK(tests::difference(best, c.filtered(search::Kind::flann)) == "");
+    }
+  }
+}
+
+TEST_CASE("Every instruction set gives the same bytes for many radii") {
+  std::vector<filter::Radius> radii;
+  for (int k = 0; k < 20; ++k) {
+    radii.push_back({0.02 * std::pow(1.2, k), filter::RadiusBasis::distance, 0.3});
+  }
+  const auto all = [&](const EngineCase& c) {
+    filter::Parameters parameters = c.parameters;
+    parameters.count_refusals = false;
+    std::vector<Rgb> values;
+    static_cast<void>(filter::average_many(
+        c.set.view(), {0, 2, 1.5, c.cameras}, parameters, radii, [&](const filter::Slab& slab) {
+          values.insert(values.end(), slab.c_bar.begin(), slab.c_bar.end());
+        }));
+    return values;
+  };
+  for (const unsigned terms : {0u, 7u, 16u, 127u}) {
+    const EngineCase c = noisy_case(3000, terms, 0.2f);
+    const std::vector<Rgb> best = all(c);
+    for (const std::string& set : instruction_sets()) {
+      const InstructionSetLimit limit(set);
+      INFO(set << ", terms " << terms);
+      const std::vector<Rgb> values = all(c);
+      REQUIRE(values.size() == best.size());
+      CHECK(std::memcmp(values.data(), best.data(), best.size() * sizeof(Rgb)) == 0);
     }
   }
 }

@@ -181,12 +181,17 @@ class RingWalk {
       alignas(64) std::int32_t ring_of[kWidth][kLanes];
       const VI radii = hn::Mul(hn::Iota(kDI, static_cast<std::int32_t>(lane)), beyond);
       for (std::size_t k = 0; k < count; ++k) {
-        const VI entry = lookup_.of(hn::Mul(d_sq[k], inverse));
-        const VI low = hn::Max(hn::ShiftRight<1>(entry), hn::Zero(kDI));
-        const V r_sq = hn::GatherIndex(kD, rings_.r_sq, hn::Add(radii, low));
-        const auto next = hn::RebindMask(kDI, hn::Ge(d_sq[k], r_sq));
-        const VI ring = hn::Sub(low, hn::VecFromMask(kDI, next));
         const auto lanes = hn::RebindMask(kDI, pass[k]);
+        if (hn::AllFalse(kDI, lanes)) continue;
+        const VI entry = lookup_.of(hn::Mul(d_sq[k], inverse));
+        VI ring = hn::ShiftRight<1>(entry);
+        const auto is_odd = hn::Ne(hn::And(entry, hn::Set(kDI, 1)), hn::Zero(kDI));
+        if (!hn::AllFalse(kDI, hn::And(lanes, is_odd))) {  // so is kOpen
+          ring = hn::Max(ring, hn::Zero(kDI));
+          const V r_sq = hn::GatherIndex(kD, rings_.r_sq, hn::Add(radii, ring));
+          const auto next = hn::RebindMask(kDI, hn::Ge(d_sq[k], r_sq));
+          ring = hn::Sub(ring, hn::VecFromMask(kDI, hn::And(is_odd, next)));
+        }
         hn::Store(hn::IfThenElse(lanes, ring, beyond), kDI, ring_of[k]);
         const auto unknown = hn::And(lanes, hn::Lt(entry, hn::Zero(kDI)));
         if (compare_all_ || !hn::AllFalse(kDI, unknown)) {
