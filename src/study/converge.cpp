@@ -10,7 +10,6 @@
 #include "core/error.h"
 #include "filter/blocks.h"
 #include "study/filter_dump.h"
-#include "study/many_dump.h"
 #include "study/variants.h"
 
 namespace psf::study {
@@ -98,10 +97,7 @@ class Study {
  private:
   [[nodiscard]] ManyRun run_of(const VariantGroup& group, std::size_t first,
                                std::size_t count) const {
-    ManyRun run;
-    run.parameters = group.parameters;
-    const auto begin = group.radii.begin() + static_cast<std::ptrdiff_t>(first);
-    run.radii.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
+    ManyRun run = study::run_of(group, first, count);
     run.passes.last = static_cast<std::size_t>(c_.n.back());
     run.snapshots = c_.n;
     run.max_memory = c_.max_memory;

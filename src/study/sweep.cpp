@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "study/many_dump.h"
 #include "study/variants.h"
 
 namespace psf::study {
@@ -34,10 +33,7 @@ class Sweeper {
  private:
   [[nodiscard]] ManyRun run_of(const VariantGroup& group, std::size_t first,
                                std::size_t count) const {
-    ManyRun run;
-    run.parameters = group.parameters;
-    run.radii.assign(group.radii.begin() + static_cast<std::ptrdiff_t>(first),
-                     group.radii.begin() + static_cast<std::ptrdiff_t>(first + count));
+    ManyRun run = study::run_of(group, first, count);
     run.passes = s_.passes;
     run.max_memory = s_.max_memory;
     return run;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "study/many_dump.h"
 #include "study/variants.h"
 
 namespace psf::study {
@@ -86,10 +85,7 @@ class Tuner {
  private:
   [[nodiscard]] ManyRun run_of(const VariantGroup& group, std::size_t first,
                                std::size_t count) const {
-    ManyRun run;
-    run.parameters = group.parameters;
-    const auto begin = group.radii.begin() + static_cast<std::ptrdiff_t>(first);
-    run.radii.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
+    ManyRun run = study::run_of(group, first, count);
     run.passes = t_.passes;
     run.max_memory = t_.max_memory;
     run.parts = parts_;

@@ -33,4 +33,12 @@ std::vector<VariantGroup> group_variants(std::span<const filter::Parameters> set
   return groups;
 }
 
+ManyRun run_of(const VariantGroup& group, std::size_t first, std::size_t count) {
+  ManyRun run;
+  run.parameters = group.parameters;
+  const auto begin = group.radii.begin() + static_cast<std::ptrdiff_t>(first);
+  run.radii.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
+  return run;
+}
+
 }  // namespace psf::study

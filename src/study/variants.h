@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "filter/parameters.h"
+#include "study/many_dump.h"
 
 namespace psf::study {
 
@@ -17,5 +18,8 @@ struct VariantGroup {
 
 // In the order of the first of each group.
 [[nodiscard]] std::vector<VariantGroup> group_variants(std::span<const filter::Parameters> sets);
+
+// A run with radii [first, first + count) of a group; passes and limits are left to the caller.
+[[nodiscard]] ManyRun run_of(const VariantGroup& group, std::size_t first, std::size_t count);
 
 }  // namespace psf::study

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "filter_dump_setup.h"
+#include "picture_difference.h"
 
 namespace psf {
 namespace {
@@ -26,18 +27,6 @@ study::ManyRun many_run(const std::string& block) {
   run.parameters = default_run(block).parameters;
   run.radii = pairs();
   return run;
-}
-
-double largest_difference(const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
-  REQUIRE(a.size() == b.size());
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    for (int c = 0; c < 3; ++c) {
-      const double scale = std::max(1e-6, std::abs(double{b[i][c]}));
-      largest = std::max(largest, std::abs(double{a[i][c]} - double{b[i][c]}) / scale);
-    }
-  }
-  return largest;
 }
 
 // Compares with filter_dump() over the first `passes` passes.

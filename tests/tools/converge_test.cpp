@@ -7,6 +7,7 @@
 #include "catch.h"
 #include "command.h"
 #include "film/image.h"
+#include "picture_difference.h"
 
 using nlohmann::json;
 using psf::tests::Outcome;
@@ -54,14 +55,7 @@ TEST_CASE("A point of a convergence study is what psf filter gives of the first 
       const auto a = psf::film::read_exr(folder / "f.exr").rgb();
       const auto b =
           psf::film::read_exr(folder / "out/" + point.at("picture").get<std::string>()).rgb();
-      double largest = 0;
-      for (std::size_t i = 0; i < a.size(); ++i) {
-        for (int c = 0; c < 3; ++c) {
-          const double scale = std::max(1e-6, std::abs(double{a[i][c]}));
-          largest = std::max(largest, std::abs(double{a[i][c]} - double{b[i][c]}) / scale);
-        }
-      }
-      CHECK(largest < 1e-5);
+      CHECK(psf::tests::largest_difference(b, a) < 1e-5);
       CHECK(point.at("mse").get<double>() ==
             Approx(point.at("metrics").at("relMSE").get<double>()).epsilon(1e-6));
       CHECK(point.at("mse").get<double>() ==

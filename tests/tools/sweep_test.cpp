@@ -6,6 +6,7 @@
 #include "catch.h"
 #include "command.h"
 #include "film/image.h"
+#include "picture_difference.h"
 
 using nlohmann::json;
 using psf::tests::Outcome;
@@ -63,14 +64,7 @@ TEST_CASE("A row of a sweep is what psf filter and psf compare give") {
     REQUIRE(filtered.code == 0);
     const auto a = psf::film::read_exr(work / "f.exr").rgb();
     const auto b = psf::film::read_exr(work / "out/" + row.at("picture").get<std::string>()).rgb();
-    double largest = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      for (int c = 0; c < 3; ++c) {
-        const double scale = std::max(1e-6, std::abs(double{a[i][c]}));
-        largest = std::max(largest, std::abs(double{a[i][c]} - double{b[i][c]}) / scale);
-      }
-    }
-    CHECK(largest < 1e-5);
+    CHECK(psf::tests::largest_difference(b, a) < 1e-5);
     const json figures = json::parse(read_text(work / "f.json"));
     CHECK(row.at("neighbors") == figures.at("neighbors").at("mean"));
     const Outcome compared = run("psf compare " + work / "f.exr " + work / "reference.exr" +

@@ -73,14 +73,8 @@ class RingWalk {
       Sums(packet_, lane).set_met_itself(Terms(tree_.plan(), on_, packet_, lane).self());
     }
     if (!judge_.is_reached()) return;
-    for (std::size_t k = 0; k < parents.size();) {
-      const std::size_t family = parents[k] / kWidth;
-      std::uint32_t asked = 0;
-      for (; k < parents.size() && parents[k] / kWidth == family; ++k) {
-        asked |= 1u << parents[k] % kWidth;
-      }
-      visit_parents(family, asked);
-    }
+    each_family(parents, [this](std::size_t family, std::uint32_t asked)
+                             HWY_ATTR { visit_parents(family, asked); });
   }
 
  private:

@@ -101,6 +101,19 @@ class Judge {
   PacketBounds queries_;
 };
 
+// Calls visit(family, the asked of its nodes) for the families of the parents given.
+template <class Visit>
+HWY_INLINE void each_family(std::span<const std::uint32_t> parents, const Visit& visit) {
+  for (std::size_t k = 0; k < parents.size();) {
+    const std::size_t family = parents[k] / kWidth;
+    std::uint32_t asked = 0;
+    for (; k < parents.size() && parents[k] / kWidth == family; ++k) {
+      asked |= 1u << parents[k] % kWidth;
+    }
+    visit(family, asked);
+  }
+}
+
 class AverageWalk {
  public:
   AverageWalk(const Tree& tree, const WeightTerms& on, Packet& packet)
@@ -115,14 +128,8 @@ class AverageWalk {
       Sums(packet_, lane).set_met_itself(Terms(tree_.plan(), on_, packet_, lane).self());
     }
     if (!judge_.is_reached()) return;
-    for (std::size_t k = 0; k < parents.size();) {
-      const std::size_t family = parents[k] / kWidth;
-      std::uint32_t asked = 0;
-      for (; k < parents.size() && parents[k] / kWidth == family; ++k) {
-        asked |= 1u << parents[k] % kWidth;
-      }
-      visit_parents(family, asked);
-    }
+    each_family(parents, [this](std::size_t family, std::uint32_t asked)
+                             HWY_ATTR { visit_parents(family, asked); });
     whole_.add_to(packet_);
   }
 

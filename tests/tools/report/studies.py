@@ -124,7 +124,7 @@ class Converge(PageTest):
         self.choose('Theory for', '\u03b4 0.2')
         smooth, edge = self.lines('Bias\u00b2', '.guide')
         self.assertSame(self.lines('Bias\u00b2')[0], smooth)
-        self.assertGreater(smooth[-1][1], edge[-1][1])  # down the screen: steeper
+        self.assertLess(smooth[0][1], edge[0][1])  # higher where they begin: steeper
         self.assertSame(self.lines('Variance')[1], self.lines('Variance', '.guide')[0])
         # Equal steps of a power of two are equal steps on both axes.
         (x0, y0), (x1, y1), (x2, y2) = self.lines('Radius')[1][:3]

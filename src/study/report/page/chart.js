@@ -1,7 +1,7 @@
 // A plot of lines over one or two logarithmic axes, in SVG by D3.
 //
 // series: [{id, name, color, dash, points: [{x, y, low, high, lines}]}], `lines` for the tip;
-// guides: [{name, slope, points: [{x, y}]}], powers of x to compare with.
+// guides: [{name, slope, points: [{x, y}]}], what theory expects, and its slope over all of them.
 'use strict';
 
 const kMargin = {
@@ -197,14 +197,13 @@ function drawGuide(area, guide, x, y) {
   area.append('path').attr('class', 'guide').attr('d', line(guide.points));
 }
 
-// After all lines, so that none crosses it out.
+// After all lines, so that none crosses it out; where guides begin, since they end in one point.
 function drawGuideName(area, guide, x, y) {
-  const end = guide.points[guide.points.length - 1];
+  const start = guide.points[0];
   const text = area.append('text')
                    .attr('class', 'guide-name')
-                   .attr('text-anchor', 'end')
-                   .attr('x', x(end.x) - 4)
-                   .attr('y', Math.max(14, y(end.y) - 7));
+                   .attr('x', x(start.x) + 6)
+                   .attr('y', Math.max(14, y(start.y) - 5));
   text.append('tspan').text(`${guide.name} n`);
   text.append('tspan')
       .attr('dy', -4)

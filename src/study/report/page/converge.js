@@ -8,12 +8,22 @@ function pointSeconds(point) {
   return known.length ? d3.sum(known) : null;
 }
 
-// The exponents of theory by delta, as [{name, slope}].
+// What theory says of a quantity: the exponent that it comes to by delta, and the name of the local
+// slopes that the study has for the n at hand.
 function theoryOf(quantity, delta) {
   if (quantity === 'bias_sq') {
-    return [{name: 'smooth', slope: -2 * delta}, {name: 'edge', slope: -delta / 2}];
+    return [
+      {name: 'smooth', slope: -2 * delta, local: 'theory_bias_sq_smooth'},
+      {name: 'edge', slope: -delta / 2, local: 'theory_bias_sq_edge'}
+    ];
   }
-  return [{name: '', slope: -(1 - delta)}];
+  return [{name: '', slope: -(1 - delta), local: 'theory_variance'}];
+}
+
+// From a point to the next: as the study has it, else what it comes to.
+function theorySlope(theory, point) {
+  const local = point.slope ? point.slope[theory.local] : null;
+  return isNumber(local) ? local : theory.slope;
 }
 
 function deltaOf(series) {
@@ -21,16 +31,20 @@ function deltaOf(series) {
   return Number.isFinite(delta) ? delta : null;
 }
 
-// A power of x through the first point of a series that can be drawn, along its points.
-function guideThrough(points, slope, name) {
-  const known = points.filter((point) => point.x > 0 && isNumber(point.y) && point.y > 0);
+// A curve of given local slopes, slopeAt(k) from point k to the next, through the last point of a
+// series, of which noise moves least; its slope is that over all of its points.
+function guideThrough(points, slopeAt, name) {
+  const known = points.map((point, k) => ({...point, k}))
+                    .filter((point) => point.x > 0 && isNumber(point.y) && point.y > 0);
   if (known.length < 2) return [];
-  const start = known[0];
-  return [{
-    name,
-    slope,
-    points: known.map((point) => ({x: point.x, y: start.y * Math.pow(point.x / start.x, slope)}))
-  }];
+  const curve = [];
+  for (let k = known.length - 1, y = known[k].y; k >= 0; --k) {
+    if (k + 1 < known.length) y *= Math.pow(known[k].x / known[k + 1].x, slopeAt(known[k].k));
+    curve.unshift({x: known[k].x, y});
+  }
+  const first = curve[0], last = curve[curve.length - 1];
+  const slope = Math.log(last.y / first.y) / Math.log(last.x / first.x);
+  return [{name, slope, points: curve}];
 }
 
 // How errors of pure noise fall with n; null where no power is expected.
@@ -87,14 +101,17 @@ function makeConverge(section, host) {
   const noise = (x) => () => {
     const plain = series.find((one) => one.color === 0), slope = noiseSlope(state.metric);
     if (!plain || !plain.shown || slope === null) return [];
-    return guideThrough(plain.points.map((point) => ({x: x(point), y: error(point)})), slope, '');
+    return guideThrough(
+        plain.points.map((point) => ({x: x(point), y: error(point)})), () => slope, '');
   };
   const parts = (quantity) => () => {
     const one = state.theory;
     if (!one || !one.shown || deltaOf(one) === null) return [];
     const points = one.points.map((point) => ({x: point.n, y: point[quantity]}));
     return theoryOf(quantity, deltaOf(one))
-        .flatMap((theory) => guideThrough(points, theory.slope, theory.name));
+        .flatMap(
+            (theory) => guideThrough(
+                points, (k) => theorySlope(theory, one.points[k]), theory.name));
   };
   const overN = {label: 'passes n', ticks: study.n};
   const speedup = (key) => (point, one) => {

@@ -11,7 +11,9 @@ function makeSlopes(study, series, metrics) {
   };
   const delta = (row) => deltaOf(row.one);
   const slope = (name) => (row) => row.point.slope ? row.point.slope[name] : null;
-  const theory = (of) => (row) => delta(row) === null ? null : of(delta(row));
+  const theory = (quantity, which) => (row) => delta(row) === null ?
+      null :
+      theorySlope(theoryOf(quantity, delta(row))[which], row.point);
   const slopes = makeTable(
       [
         inSeries,
@@ -21,15 +23,17 @@ function makeSlopes(study, series, metrics) {
             metrics[0].name, slope(metrics[0].name), 'slope of the whole error', formatSlope),
         numberColumn('bias\u00b2', slope('bias_sq'), 'slope of the squared bias', formatSlope),
         numberColumn(
-            'smooth', theory((d) => -2 * d), 'theory of bias\u00b2, smooth radiance: \u22122\u03b4',
+            'smooth', theory('bias_sq', 0),
+            'theory of bias\u00b2, smooth radiance; comes to \u22122\u03b4',
             formatSlope),
         numberColumn(
-            'edge', theory((d) => -d / 2), 'theory of bias\u00b2 at an edge: \u2212\u03b4/2',
+            'edge', theory('bias_sq', 1), 'theory of bias\u00b2 at an edge; comes to \u2212\u03b4/2',
             formatSlope),
         numberColumn('variance', slope('variance'), 'slope of the variance', formatSlope),
         numberColumn(
-            'theory', (row) => delta(row) === null ? -1 : delta(row) - 1,
-            'theory of variance with many neighbours: \u2212(1 \u2212 \u03b4)', formatSlope),
+            'theory', (row) => delta(row) === null ? -1 : theory('variance', 0)(row),
+            'theory of variance with many neighbours; comes to \u2212(1 \u2212 \u03b4)',
+            formatSlope),
         numberColumn('M(n)', (row) => row.point.neighbors, 'mean neighbours'),
         numberColumn('radius px', (row) => row.point.radius_px, ''),
       ],
