@@ -12,6 +12,37 @@
 
 namespace psf::filter::engine {
 
+// Red, green, blue and a count; in the order of RingPacket's sums. A type of both compilers, which
+// adds and multiplies four at once.
+using Quadruple = double __attribute__((vector_size(4 * sizeof(double)), aligned(8), may_alias));
+
+// What Statistics counts of queries, by radius, close together.
+class QueryCounts {
+ public:
+  explicit QueryCounts(std::size_t radii)
+      : accepted_(radii, 0),
+        least_(radii, std::numeric_limits<std::uint32_t>::max()),
+        most_(radii, 0) {}
+
+  void add(std::size_t k, std::uint32_t neighbors) {
+    accepted_[k] += neighbors;
+    least_[k] = std::min(least_[k], neighbors);
+    most_[k] = std::max(most_[k], neighbors);
+  }
+  void add_to(std::span<Statistics> statistics) const {
+    for (std::size_t k = 0; k < statistics.size(); ++k) {
+      Statistics& one = statistics[k];
+      one.accepted += accepted_[k];
+      one.min_neighbors = std::min<std::uint64_t>(one.min_neighbors, least_[k]);
+      one.max_neighbors = std::max<std::uint64_t>(one.max_neighbors, most_[k]);
+    }
+  }
+
+ private:
+  std::vector<std::uint64_t> accepted_;
+  std::vector<std::uint32_t> least_, most_;
+};
+
 // Works on packets one after the other with memory of its own.
 class RingEngine::Range {
  public:
@@ -27,7 +58,10 @@ class RingEngine::Range {
         sums_(kWidth * (rings_ + 1) * 4),
         whole_(rings_ * 4),
         average_(rings_),
-        neighbors_(rings_) {}
+        neighbors_(rings_),
+        queries_(rings_) {}
+
+  void add_counts() const { queries_.add_to(statistics_); }
 
   void average(std::span<const std::uint32_t> queries, std::span<const std::uint32_t> nodes,
                Packet& packet) {
@@ -61,35 +95,45 @@ class RingEngine::Range {
   // Query i, the q-th of its packet; `met`: the walk met i itself, in its first ring.
   void finish(std::uint32_t i, std::size_t q, bool met) {
     const bool source = e_.packets_.is_source(i);
-    const bool disk = !p_.area.empty();
-    const double own = disk ? double{p_.area[i]} : 1;
-    const double* ring = &sums_[q * (rings_ + 1) * 4];
     const float* r = &r_[q * rings_];
-    double ball[4] = {};
+    // Whether i is in the sums of every radius that it must be in.
+    const bool is_in = !source || (met && r_sq_[q * rings_] > 0);
+    const bool simple = is_in && p_.area.empty();
+    const auto* ring = reinterpret_cast<const Quadruple*>(&sums_[q * (rings_ + 1) * 4]);
+    const auto* whole = reinterpret_cast<const Quadruple*>(whole_.begin());
+    Quadruple ball = {0, 0, 0, 0};
     std::optional<Rgb> adopted;
     for (std::size_t k = 0; k < rings_; ++k) {
-      for (std::size_t c = 0; c < 4; ++c) ball[c] += ring[4 * k + c] + whole_[4 * k + c];
-      Sum sum{ball[0], ball[1], ball[2]};
-      auto count = static_cast<std::uint32_t>(static_cast<std::int64_t>(ball[3]));
-      if (source && !(met && r_sq_[q * rings_ + k] > 0)) {
-        sum.add(e_.values_[i], own);
-        ++count;
+      ball += ring[k] + whole[k];
+      const auto count = static_cast<std::uint32_t>(static_cast<std::int64_t>(ball[3]));
+      if (simple && count > 0) {
+        // One division for three: most of the time that is spent here. Of n equal values it is
+        // that value too.
+        const Quadruple mean = ball * (1 / ball[3]);
+        average_[k] = Rgb(static_cast<float>(mean[0]), static_cast<float>(mean[1]),
+                          static_cast<float>(mean[2]));
+        neighbors_[k] = count;
+      } else {
+        finish_one(i, r[k], k, ball, source && !(met && r_sq_[q * rings_ + k] > 0), adopted);
       }
-      statistics_[k].add_query(count);
-      neighbors_[k] = count;
-      average_[k] = count == 0 ? adopt_one(i, r[k], k, adopted)
-                    : disk     ? estimate(sum, count, disk, r[k], e_.values_[i])
-                               : mean(sum, count);
+      queries_.add(k, neighbors_[k]);
     }
     visit_({i, {r, rings_}, average_, neighbors_});
   }
 
-  // As estimate(), but that it divides once, which is most of the time that is spent here: of n
-  // equal values it is that value too.
-  static Rgb mean(const Sum& sum, std::uint32_t count) {
-    const double share = 1 / static_cast<double>(count);
-    return {static_cast<float>(sum.x * share), static_cast<float>(sum.y * share),
-            static_cast<float>(sum.z * share)};
+  // `add_own`: i is not in `ball`.
+  void finish_one(std::uint32_t i, float r_i, std::size_t k, const Quadruple& ball, bool add_own,
+                  std::optional<Rgb>& adopted) {
+    const bool disk = !p_.area.empty();
+    Sum sum{ball[0], ball[1], ball[2]};
+    auto count = static_cast<std::uint32_t>(static_cast<std::int64_t>(ball[3]));
+    if (add_own) {
+      sum.add(e_.values_[i], disk ? double{p_.area[i]} : 1);
+      ++count;
+    }
+    neighbors_[k] = count;
+    average_[k] =
+        count == 0 ? adopt_one(i, r_i, k, adopted) : estimate(sum, count, disk, r_i, e_.values_[i]);
   }
 
   // What an orphan averages depends on the radius only where `plane` does.
@@ -117,6 +161,7 @@ class RingEngine::Range {
   core::Buffer<double> whole_;    // (rings, 4)
   std::vector<Rgb> average_;
   std::vector<std::uint32_t> neighbors_;
+  QueryCounts queries_;
   bool matched_ = true;  // of the orphan that was adopted last
 };
 
@@ -131,6 +176,7 @@ void RingEngine::average(std::size_t begin, std::size_t end, std::span<Statistic
   packets_.each(begin, end, [&](auto queries, auto nodes, Packet& packet) {
     range.average(queries, nodes, packet);
   });
+  range.add_counts();
 }
 
 }  // namespace psf::filter::engine

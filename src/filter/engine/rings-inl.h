@@ -172,8 +172,10 @@ class RingWalk {
       // First where all go, so that the look-ups do not wait for each other. Pairs that do not
       // pass go to a ring behind the last, which nobody reads: faster than to ask.
       const VI beyond = hn::Set(kDI, static_cast<std::int32_t>(count_));
-      alignas(64) std::int32_t ring_of[kWidth][kLanes];
-      const VI radii = hn::Mul(hn::Iota(kDI, static_cast<std::int32_t>(lane)), beyond);
+      const VI queries = hn::Iota(kDI, static_cast<std::int32_t>(lane));
+      const VI radii = hn::Mul(queries, beyond);
+      const VI sums = hn::Mul(queries, hn::Set(kDI, static_cast<std::int32_t>(stride_)));
+      alignas(64) std::int32_t place_of[kWidth][kLanes];  // of the sums
       for (std::size_t k = 0; k < count; ++k) {
         const auto lanes = hn::RebindMask(kDI, pass[k]);
         if (hn::AllFalse(kDI, lanes)) continue;
@@ -186,36 +188,37 @@ class RingWalk {
           const auto next = hn::RebindMask(kDI, hn::Ge(d_sq[k], r_sq));
           ring = hn::Sub(ring, hn::VecFromMask(kDI, hn::And(is_odd, next)));
         }
-        hn::Store(hn::IfThenElse(lanes, ring, beyond), kDI, ring_of[k]);
+        ring = hn::IfThenElse(lanes, ring, beyond);
+        hn::Store(hn::Add(hn::ShiftLeft<2>(ring), sums), kDI, place_of[k]);
         const auto unknown = hn::And(lanes, hn::Lt(entry, hn::Zero(kDI)));
         if (compare_all_ || !hn::AllFalse(kDI, unknown)) {
           const M asked = compare_all_ ? pass[k] : hn::RebindMask(kD, unknown);
-          compare_lanes(columns + k, lane, bits_of(asked), ring_of[k]);
+          compare_lanes(columns + k, lane, bits_of(asked), place_of[k]);
         }
       }
       for (std::size_t k = 0; k < count; ++k) {
-        if (!hn::AllFalse(kD, pass[k])) add_pairs(ring_of[k], value[k], lane);
+        if (!hn::AllFalse(kD, pass[k])) add_pairs(place_of[k], value[k]);
       }
     }
   }
 
-  HWY_INLINE void add_pairs(const std::int32_t* ring_of, const double* value, std::size_t lane) {
-    double* sums = rings_.sums + lane * stride_;
-    for (std::size_t q = 0; q < kLanes; ++q, sums += stride_) {
-      Quadruple::add(value, sums + 4 * ring_of[q]);
+  HWY_INLINE void add_pairs(const std::int32_t* place_of, const double* value) {
+    for (std::size_t q = 0; q < kLanes; ++q) {
+      Quadruple::add(value, rings_.sums + static_cast<std::uint32_t>(place_of[q]));
     }
   }
 
   void compare_lanes(const float* source, std::size_t lane, std::uint32_t lanes,
-                     std::int32_t* ring_of) const {
+                     std::int32_t* place_of) const {
     for (; lanes != 0; lanes &= lanes - 1) {
       const std::uint32_t q = lowest_bit(lanes);
-      ring_of[q] = compare(source, lane + q);
+      const std::size_t ring = compare(source, lane + q);
+      place_of[q] = static_cast<std::int32_t>((lane + q) * stride_ + ring * 4);
     }
   }
 
   // The ring of a pair by comparing with the radii; the pair passes with the largest.
-  std::int32_t compare(const float* source, std::size_t q) const {
+  std::size_t compare(const float* source, std::size_t q) const {
     const float* x = packet_.columns + q;
     const Vec3 x_i(x[0], x[kWidth], x[2 * kWidth]);
     const Vec3 x_j(source[0], source[kWidth], source[2 * kWidth]);
@@ -228,7 +231,7 @@ class RingWalk {
       const float* r = rings_.r + q * count_;
       while (!plane_term(x_i, n_i, x_j, *on_.plane, r[ring])) ++ring;
     }
-    return static_cast<std::int32_t>(ring);
+    return ring;
   }
 
   const Tree& tree_;
