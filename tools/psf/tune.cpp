@@ -178,6 +178,7 @@ void add_tune(CLI::App& app) {
       ->transform(CLI::AsSizeValue(false))
       ->type_name("SIZE");
   add_parameter_lists(*command, options->lists);
+  command->get_option("--r0")->description("radii (default nine from 2px to 32px)");
   add_common(*command, options->common);
   set_example(*command, "psf tune scene.pvb --delta 0.2,0.33,0.5 --json tuned.json");
   command->callback([options] { run(*options); });
