@@ -36,9 +36,10 @@ constexpr std::size_t kProgressSteps = 1000;
 // What a row has that others do not: the parameters of which the sweep has several values.
 std::vector<std::string> varied(const study::Json& rows) {
   std::vector<std::string> names;
-  for (const auto& [name, value] : rows[0]["parameters"].items()) {
+  for (const auto& parameter : rows[0]["parameters"].items()) {
+    const std::string& name = parameter.key();
     const bool differs = std::any_of(rows.begin(), rows.end(), [&](const study::Json& row) {
-      return row["parameters"][name] != value;
+      return row["parameters"][name] != parameter.value();
     });
     if (differs) names.push_back(name);
   }
