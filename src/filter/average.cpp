@@ -1,10 +1,10 @@
 #include "filter/average.h"
 
-#include <chrono>
 #include <memory>
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/seconds.h"
 #include "filter/estimators/adaptive.h"
 #include "filter/estimators/control.h"
 #include "filter/estimators/hash.h"
@@ -17,10 +17,8 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;
 
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+using core::Clock;
+using core::seconds_since;
 
 // Of every query, see finished().
 void finish(const Records& records, const Roles& roles, std::span<const float> radius,

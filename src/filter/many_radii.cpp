@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 
 #include "core/interrupt.h"
 #include "core/parallel.h"
+#include "core/seconds.h"
 #include "filter/engine/ring_engine.h"
 #include "filter/inputs.h"
 #include "filter/radius.h"
@@ -13,16 +13,17 @@
 namespace psf::filter {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+using core::Clock;
+using core::seconds_since;
 
 // Radii that share a traversal at most: their sums for 16 queries fit a second-level cache.
 constexpr std::size_t kMostRings = 256;
 
 // Few, so that what one traversal writes is still in a cache when it is added to pictures.
 constexpr std::size_t kRangesAThread = 4;
+std::size_t queries_of_slab() {
+  return engine::RingEngine::kGrain * kRangesAThread * core::thread_count();
+}
 
 // Distinct scales, ascending, and where each radius is among them.
 struct Scales {
@@ -106,7 +107,7 @@ class Many {
                 std::vector<Statistics>& by_scale) {
     constexpr std::size_t kGrain = engine::RingEngine::kGrain;
     const std::size_t rings = scales.values.size(), columns = radii_.size();
-    const std::size_t slab = kGrain * kRangesAThread * core::thread_count();
+    const std::size_t slab = queries_of_slab();
     const std::span<const std::uint32_t> queries = engine.queries();
     std::vector<Rgb> c_bar(std::min(slab, queries.size()) * columns);
     for (std::size_t first = 0; first < queries.size(); first += slab) {
@@ -175,9 +176,8 @@ ManyAverages average_many(const Records& records, const Block& block, const Para
   return Many(records, block, parameters, radii, on_slab).run();
 }
 
-std::uint64_t memory_of_many(std::size_t radii, std::uint64_t records) {
-  const std::size_t queries = engine::RingEngine::kGrain * kRangesAThread * core::thread_count();
-  return queries * radii * sizeof(Rgb) + records * sizeof(double);
+std::uint64_t memory_of_slab(std::size_t radii) {
+  return queries_of_slab() * radii * sizeof(Rgb);
 }
 
 }  // namespace psf::filter

@@ -32,7 +32,8 @@ struct ManyAverages {
                                         const Parameters& parameters, std::span<const Radius> radii,
                                         const std::function<void(const Slab&)>& on_slab);
 
-// Bytes beside those of memory_per_record(), of the slab and of each record.
-[[nodiscard]] std::uint64_t memory_of_many(std::size_t radii, std::uint64_t records);
+// Bytes beside those of memory_per_record(): of the slab, and of each record.
+[[nodiscard]] std::uint64_t memory_of_slab(std::size_t radii);
+inline constexpr std::uint64_t kManyBytesPerRecord = sizeof(double);
 
 }  // namespace psf::filter

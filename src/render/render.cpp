@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <future>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "core/interrupt.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/seconds.h"
 #include "formats/reader.h"
 #include "render/camera.h"
 #include "render/recorder.h"
@@ -26,10 +26,8 @@ namespace {
 constexpr std::size_t kSlab = std::size_t{1} << 18;  // records traced before they are written
 constexpr std::size_t kGrain = 1024;                 // paths a task
 
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+using core::Clock;
+using core::seconds_since;
 
 // A camera's place among the paths of a pass.
 struct View {

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
 #include "core/error.h"
+#include "core/seconds.h"
 #include "filter/blocks.h"
 #include "study/filter_dump.h"
 #include "study/variants.h"
@@ -15,7 +15,8 @@
 namespace psf::study {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using core::Clock;
+using core::seconds_since;
 
 constexpr std::uint64_t kMostPictures = std::uint64_t{1} << 30;  // bytes, where no limit is given
 
@@ -79,25 +80,17 @@ class Study {
 
   std::vector<ConvergeSeries> run() {
     const std::vector<VariantGroup> groups = group_variants(c_.sets);
-    std::vector<std::size_t> at_once;
-    for (const VariantGroup& group : groups) {
-      at_once.push_back(sets_at_once(group));
-      traversals_ += (group.radii.size() + at_once.back() - 1) / at_once.back() * dumps_.size();
-    }
-    if (c_.with_times) traversals_ += c_.sets.size();
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      for (std::size_t first = 0; first < groups[g].radii.size(); first += at_once[g]) {
-        traverse(groups[g], first, std::min(at_once[g], groups[g].radii.size() - first));
-      }
-    }
+    const std::vector<Traversal> traversals =
+        split(groups, [this](const VariantGroup& group) { return sets_at_once(group); });
+    runs_ = traversals.size() * dumps_.size() + (c_.with_times ? c_.sets.size() : 0);
+    for (const Traversal& traversal : traversals) traverse(traversal);
     for (std::size_t k = 0; c_.with_times && k < c_.sets.size(); ++k) measure_time(k);
     return std::move(series_);
   }
 
  private:
-  [[nodiscard]] ManyRun run_of(const VariantGroup& group, std::size_t first,
-                               std::size_t count) const {
-    ManyRun run = study::run_of(group, first, count);
+  [[nodiscard]] ManyRun run_of(const Traversal& traversal) const {
+    ManyRun run = study::run_of(traversal);
     run.passes.last = static_cast<std::size_t>(c_.n.back());
     run.snapshots = c_.n;
     run.max_memory = c_.max_memory;
@@ -109,16 +102,17 @@ class Study {
         dumps_.size() * c_.n.size() * picture_.size() * sizeof(Rgb);  // of a set
     const auto fitting = static_cast<std::size_t>(c_.max_memory.value_or(kMostPictures) / pictures);
     const std::size_t filtering =
-        radii_at_once(dumps_.front(), run_of(group, 0, group.radii.size()));
+        radii_at_once(dumps_.front(), run_of({&group, 0, group.radii.size()}));
     return std::clamp<std::size_t>(fitting, 1, filtering);
   }
 
-  void traverse(const VariantGroup& group, std::size_t first, std::size_t count) {
+  void traverse(const Traversal& traversal) {
+    const std::size_t count = traversal.count;
     const bool with_unfiltered = done_ == 0;
     const std::size_t rows = count + (with_unfiltered ? 1 : 0);
     std::vector<std::vector<Cell>> cells(rows, std::vector<Cell>(c_.n.size()));
     for (std::size_t r = 0; r < dumps_.size(); ++r) {
-      ManyRun run = run_of(group, first, count);
+      ManyRun run = run_of(traversal);
       std::size_t place = 0;
       run.on_snapshot = [&](std::uint64_t n, const ManyOutcome& outcome) {
         const ManyPictures& pictures = outcome.pictures[c_.camera];
@@ -127,8 +121,7 @@ class Study {
           const bool filtered = k < count;
           std::vector<Rgb> picture = filtered ? pictures.filtered(k) : pictures.unfiltered();
           if (r == 0 && c_.on_picture) {
-            c_.on_picture(filtered ? std::optional(group.rows[first + k]) : std::nullopt, n,
-                          picture);
+            c_.on_picture(filtered ? std::optional(traversal.row(k)) : std::nullopt, n, picture);
           }
           cell.add(reference_, std::move(picture));
           if (!filtered) continue;
@@ -142,7 +135,7 @@ class Study {
       ++done_;
     }
     for (std::size_t k = 0; k < rows; ++k) {
-      ConvergeSeries& series = series_[k < count ? group.rows[first + k] + 1 : 0];
+      ConvergeSeries& series = series_[k < count ? traversal.row(k) + 1 : 0];
       for (std::size_t t = 0; t < c_.n.size(); ++t) {
         finish(cells[k][t], c_.n[t], series.points[t]);
         if (series.parameters) {
@@ -192,8 +185,7 @@ class Study {
     std::size_t place = 0;
     const auto start = Clock::now();
     run.on_snapshot = [&](std::uint64_t, std::span<const CameraPictures>) {
-      points[places[place++]].filter_seconds =
-          std::chrono::duration<double>(Clock::now() - start).count();
+      points[places[place++]].filter_seconds = seconds_since(start);
     };
     static_cast<void>(filter_dump(dump, run));
     ++done_;
@@ -201,11 +193,11 @@ class Study {
   [[nodiscard]] double seconds_of(const FilterRun& run) const {
     const auto start = Clock::now();
     static_cast<void>(filter_dump(dumps_.front(), run));
-    return std::chrono::duration<double>(Clock::now() - start).count();
+    return seconds_since(start);
   }
 
   void progress(std::uint64_t done, std::uint64_t total) const {
-    if (c_.on_progress) c_.on_progress(done_ * total + done, traversals_ * total);
+    if (c_.on_progress) c_.on_progress(done_ * total + done, runs_ * total);
   }
 
   const Reference& reference_;
@@ -213,7 +205,7 @@ class Study {
   const Convergence& c_;
   std::vector<Dump> dumps_;
   std::vector<ConvergeSeries> series_;
-  std::uint64_t traversals_ = 0, done_ = 0;
+  std::uint64_t runs_ = 0, done_ = 0;
 };
 
 }  // namespace

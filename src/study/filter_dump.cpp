@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 #include <utility>
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/seconds.h"
 #include "filter/average.h"
 #include "filter/radius.h"
 #include "study/block_reader.h"
@@ -16,10 +16,8 @@
 namespace psf::study {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+using core::Clock;
+using core::seconds_since;
 
 void check_snapshots(const Dump& dump, const std::vector<std::uint64_t>& snapshots,
                      std::uint64_t passes) {

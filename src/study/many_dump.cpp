@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/seconds.h"
 #include "filter/blocks.h"
 #include "filter/parameters_text.h"
 #include "filter/radius.h"
@@ -16,28 +16,20 @@
 namespace psf::study {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using core::Clock;
+using core::seconds_since;
 
 // Pictures beside those that grow: of a last block that is not whole, and one to look at.
 constexpr std::uint64_t kCopies = 2;
 
-std::uint64_t longest_of_two(const Dump& dump, const ManyRun& run, std::size_t last) {
-  const filter::Blocks blocks(run.parameters.block, dump.pass_bounds(), run.passes.first, last);
-  std::uint64_t longest = 0;
-  for (std::uint64_t k = 0; k < std::min<std::uint64_t>(blocks.count(), 2); ++k) {
-    longest = std::max(longest, blocks[k].size());
-  }
-  return longest;
-}
-
-MemoryRequest request_of(const Dump& dump, const ManyRun& run, std::size_t last,
-                         std::size_t radii) {
+MemoryRequest request_of(const ManyRun& run, std::size_t last, std::size_t radii) {
   return {run.parameters,
           run.passes.first,
           last,
           run.max_memory,
           kCopies * run.parts * ManyPictures::bytes_of_sums(radii),
-          filter::memory_of_many(radii, longest_of_two(dump, run, last))};
+          filter::memory_of_slab(radii),
+          filter::kManyBytesPerRecord};
 }
 
 class ManyRunner {
@@ -49,14 +41,13 @@ class ManyRunner {
         last_(last_pass(dump, run.passes)),
         channels_(dump.select(run.parameters, false)),
         reader_(dump, channels_) {
-    outcome_.memory =
-        plan_memory(dump_, channels_, request_of(dump_, run_, last_, run_.radii.size()));
+    check_parts();
+    outcome_.memory = plan_memory(dump_, channels_, request_of(run_, last_, run_.radii.size()));
     for (std::size_t part = 0; part < run_.parts; ++part) {
       for (const filter::CameraView& camera : dump_.cameras()) {
         outcome_.pictures.emplace_back(camera, run_.radii.size());
       }
     }
-    check_parts();
     outcome_.statistics.resize(run_.radii.size());
   }
 
@@ -128,7 +119,7 @@ class ManyRunner {
       outcome_.statistics[r] += averages.statistics[r];
     }
     set_radius(records, block, averages.roles);
-    outcome_.seconds += std::chrono::duration<double>(Clock::now() - start).count();
+    outcome_.seconds += seconds_since(start);
     if (run_.on_progress) {
       run_.on_progress(range.last - dump_.pass_bounds()[first_],
                        dump_.pass_bounds()[last_] - dump_.pass_bounds()[first_]);
@@ -182,7 +173,7 @@ std::size_t radii_at_once(const Dump& dump, const ManyRun& run) {
   const std::size_t last = last_pass(dump, run.passes);
   const ChannelSet channels = dump.select(run.parameters, false);
   std::size_t radii = run.radii.size();
-  while (radii > 1 && !fits_memory(dump, channels, request_of(dump, run, last, radii))) {
+  while (radii > 1 && !fits_memory(dump, channels, request_of(run, last, radii))) {
     radii = (radii + 1) / 2;
   }
   return radii;

@@ -89,7 +89,8 @@ class Planner {
     result.pictures = dump_.pixels() * r_.bytes_a_pixel;
     result.block = longest * record_bytes_;
     result.blocks = blocks;
-    result.filter = longest * filter::memory_per_record(r_.parameters) + r_.beside;
+    result.filter =
+        longest * (filter::memory_per_record(r_.parameters) + r_.beside_a_record) + r_.beside;
     result.program += std::min(result.filter / kHolesShare, kMostHoles);
     result.stored = longest * dump_.reader().head().stride();
     return result;

@@ -29,7 +29,8 @@ struct MemoryRequest {
   std::size_t first_pass, last_pass;   // [first, last)
   std::optional<std::uint64_t> limit;  // bytes
   std::uint64_t bytes_a_pixel;         // of all pictures, and of writing them
-  std::uint64_t beside = 0;            // bytes that the run takes beside the filter
+  std::uint64_t beside = 0;            // bytes that the run takes beside the filter,
+  std::uint64_t beside_a_record = 0;   // and of each record of a block
 };
 
 // With several threads and blocks it is for two blocks, unless they exceed the limit. Throws

@@ -15,34 +15,28 @@ class Sweeper {
   void run() {
     const std::vector<std::uint64_t>& bounds = dump_.pass_bounds();
     paths_ = bounds[last_pass(dump_, s_.passes)] - bounds[s_.passes.first];
-    for (const VariantGroup& group : groups_) {
-      const ManyRun all = run_of(group, 0, group.radii.size());
-      parts_.push_back(radii_at_once(dump_, all));
-      traversals_ += (group.radii.size() + parts_.back() - 1) / parts_.back();
-    }
-    for (std::size_t g = 0; g < groups_.size(); ++g) {
-      for (std::size_t first = 0; first < groups_[g].radii.size(); first += parts_[g]) {
-        const std::size_t count = std::min(parts_[g], groups_[g].radii.size() - first);
-        traverse(groups_[g], first, count);
-        ++done_;
-        if (s_.on_traversal) s_.on_traversal();
-      }
+    traversals_ = split(groups_, [this](const VariantGroup& group) {
+      return radii_at_once(dump_, run_of({&group, 0, group.radii.size()}));
+    });
+    for (const Traversal& traversal : traversals_) {
+      traverse(traversal);
+      ++done_;
+      if (s_.on_traversal) s_.on_traversal();
     }
   }
 
  private:
-  [[nodiscard]] ManyRun run_of(const VariantGroup& group, std::size_t first,
-                               std::size_t count) const {
-    ManyRun run = study::run_of(group, first, count);
+  [[nodiscard]] ManyRun run_of(const Traversal& traversal) const {
+    ManyRun run = study::run_of(traversal);
     run.passes = s_.passes;
     run.max_memory = s_.max_memory;
     return run;
   }
 
-  void traverse(const VariantGroup& group, std::size_t first, std::size_t count) {
-    ManyRun run = run_of(group, first, count);
+  void traverse(const Traversal& traversal) {
+    ManyRun run = run_of(traversal);
     run.on_progress = [this](std::uint64_t done, std::uint64_t) {
-      if (s_.on_progress) s_.on_progress(done_ * paths_ + done, traversals_ * paths_);
+      if (s_.on_progress) s_.on_progress(done_ * paths_ + done, traversals_.size() * paths_);
     };
     const ManyOutcome outcome = filter_many(dump_, run);
     const ManyPictures& pictures = outcome.pictures[s_.camera];
@@ -50,9 +44,9 @@ class Sweeper {
       const std::vector<Rgb> unfiltered = pictures.unfiltered();
       s_.on_unfiltered(reference_.measure(unfiltered), unfiltered);
     }
-    for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t k = 0; k < traversal.count; ++k) {
       const filter::Statistics& statistics = outcome.statistics[k];
-      const std::size_t row_number = group.rows[first + k];
+      const std::size_t row_number = traversal.row(k);
       const std::vector<Rgb> picture = pictures.filtered(k);
       SweepRow row;
       row.parameters = s_.rows[row_number];
@@ -63,7 +57,7 @@ class Sweeper {
       row.orphans = statistics.orphans;
       row.left_out = statistics.left_out + statistics.without_source;
       row.seconds = outcome.seconds;
-      row.shared = count;
+      row.shared = traversal.count;
       s_.on_row(row_number, row, picture);
     }
   }
@@ -72,8 +66,8 @@ class Sweeper {
   const Reference& reference_;
   const Sweep& s_;
   std::vector<VariantGroup> groups_;
-  std::vector<std::size_t> parts_;  // radii at once, of each group
-  std::uint64_t paths_ = 0, traversals_ = 0, done_ = 0;
+  std::vector<Traversal> traversals_;
+  std::uint64_t paths_ = 0, done_ = 0;  // of a traversal; traversals
 };
 
 }  // namespace

@@ -67,25 +67,20 @@ class Tuner {
     }
     tuning_.parts = parts_;
     const std::vector<VariantGroup> groups = group_variants(t_.sets);
-    std::vector<std::size_t> at_once;
-    for (const VariantGroup& group : groups) {
-      at_once.push_back(radii_at_once(dump_, run_of(group, 0, group.radii.size())));
-      traversals_ += (group.radii.size() + at_once.back() - 1) / at_once.back();
-    }
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      for (std::size_t first = 0; first < groups[g].radii.size(); first += at_once[g]) {
-        traverse(groups[g], first, std::min(at_once[g], groups[g].radii.size() - first));
-        ++done_;
-      }
+    traversals_ = split(groups, [this](const VariantGroup& group) {
+      return radii_at_once(dump_, run_of({&group, 0, group.radii.size()}));
+    });
+    for (const Traversal& traversal : traversals_) {
+      traverse(traversal);
+      ++done_;
     }
     choose();
     return std::move(tuning_);
   }
 
  private:
-  [[nodiscard]] ManyRun run_of(const VariantGroup& group, std::size_t first,
-                               std::size_t count) const {
-    ManyRun run = study::run_of(group, first, count);
+  [[nodiscard]] ManyRun run_of(const Traversal& traversal) const {
+    ManyRun run = study::run_of(traversal);
     run.passes = t_.passes;
     run.max_memory = t_.max_memory;
     run.parts = parts_;
@@ -96,10 +91,12 @@ class Tuner {
     return {parameters.block, dump_.pass_bounds(), t_.passes.first, last_pass(dump_, t_.passes)};
   }
 
-  void traverse(const VariantGroup& group, std::size_t first, std::size_t count) {
-    ManyRun run = run_of(group, first, count);
+  void traverse(const Traversal& traversal) {
+    const VariantGroup& group = *traversal.group;
+    const std::size_t count = traversal.count;
+    ManyRun run = run_of(traversal);
     run.on_progress = [this](std::uint64_t done, std::uint64_t total) {
-      if (t_.on_progress) t_.on_progress(done_ * total + done, traversals_ * total);
+      if (t_.on_progress) t_.on_progress(done_ * total + done, traversals_.size() * total);
     };
     const ManyOutcome outcome = filter_many(dump_, run);
     const auto pictures_of = [&](std::size_t part) -> const ManyPictures& {
@@ -121,8 +118,8 @@ class Tuner {
       guess_by_median(filtered, count);
       std::size_t best = 0;
       for (std::size_t k = 0; k < count; ++k) {
-        measure(filtered(k), unfiltered, group.rows[first + k]);
-        const auto error = [&](std::size_t of) { return tiles_[group.rows[first + of]].sum(); };
+        measure(filtered(k), unfiltered, traversal.row(k));
+        const auto error = [&](std::size_t of) { return tiles_[traversal.row(of)].sum(); };
         if (error(k) < error(best)) best = k;
       }
       const Parts chosen = filtered(best);
@@ -131,9 +128,9 @@ class Tuner {
       measure_unfiltered(unfiltered);
     }
     for (std::size_t k = 0; k < count; ++k) {
-      TuneRow& row = tuning_.rows[group.rows[first + k]];
-      measure(filtered(k), unfiltered, group.rows[first + k]);
-      row.parameters = t_.sets[group.rows[first + k]];
+      TuneRow& row = tuning_.rows[traversal.row(k)];
+      measure(filtered(k), unfiltered, traversal.row(k));
+      row.parameters = t_.sets[traversal.row(k)];
       row.neighbors = outcome.statistics[k].mean_neighbors();
     }
   }
@@ -199,15 +196,26 @@ class Tuner {
     }
   }
 
-  // Calls visit(pixel, c, i, j, weight, 1 / (1 / a_i + 1 / a_j)) for all that is finite.
+  // A value of a pixel in two parts.
+  struct Place {
+    std::size_t pixel;
+    int c;
+    std::size_t i, j;
+    double g, weight;  // weight: of its square, over pixels, colours and pairs
+    double shares;     // 1 / (1 / a_i + 1 / a_j)
+
+    [[nodiscard]] double of_i(const Parts& parts) const { return double{parts[i][pixel][c]}; }
+    [[nodiscard]] double of_j(const Parts& parts) const { return double{parts[j][pixel][c]}; }
+  };
+
+  // Visits every place that is finite in both pictures.
   template <class Visit>
   void each(const Parts& x, const Parts& y, const Visit& visit) const {
-    const auto pixels = static_cast<double>(width_ * height_);
-    const auto pairs = static_cast<double>(guesses_.size());
+    const double values = 3 * static_cast<double>(width_ * height_ * guesses_.size());
     std::size_t pair = 0;
     for_pairs([&](std::size_t i, std::size_t j) {
       const Picture& guess = guesses_[pair++];
-      const double both = shares_[i] * shares_[j] / (shares_[i] + shares_[j]);
+      const double shares = shares_[i] * shares_[j] / (shares_[i] + shares_[j]);
       for (std::size_t pixel = 0; pixel < guess.size(); ++pixel) {
         if (!is_finite(x[i][pixel]) || !is_finite(x[j][pixel]) || !is_finite(y[i][pixel]) ||
             !is_finite(y[j][pixel]) || !is_finite(guess[pixel])) {
@@ -215,7 +223,7 @@ class Tuner {
         }
         for (int c = 0; c < 3; ++c) {
           const double g = double{guess[pixel][c]};
-          visit(pixel, c, i, j, 1 / ((g * g + t_.epsilon) * 3 * pixels * pairs), both);
+          visit(Place{pixel, c, i, j, g, 1 / ((g * g + t_.epsilon) * values), shares});
         }
       }
     });
@@ -223,21 +231,13 @@ class Tuner {
 
   void measure_unfiltered(const Parts& unfiltered) {
     double together = 0, squares_i = 0, squares_j = 0;
-    std::size_t pair = 0, at_i = kParts, at_j = kParts;
-    each(unfiltered, unfiltered,
-         [&](std::size_t pixel, int c, std::size_t i, std::size_t j, double weight, double both) {
-           if (at_i != i || at_j != j) {
-             if (at_i != kParts) ++pair;
-             at_i = i;
-             at_j = j;
-           }
-           const double a = double{unfiltered[i][pixel][c]}, b = double{unfiltered[j][pixel][c]};
-           const double g = double{guesses_[pair][pixel][c]};
-           tuning_.unfiltered += weight * both * (a - b) * (a - b);
-           together += weight * (a - g) * (b - g);
-           squares_i += weight * (a - g) * (a - g);
-           squares_j += weight * (b - g) * (b - g);
-         });
+    each(unfiltered, unfiltered, [&](const Place& at) {
+      const double a = at.of_i(unfiltered), b = at.of_j(unfiltered);
+      tuning_.unfiltered += at.weight * at.shares * (a - b) * (a - b);
+      together += at.weight * (a - at.g) * (b - at.g);
+      squares_i += at.weight * (a - at.g) * (a - at.g);
+      squares_j += at.weight * (b - at.g) * (b - at.g);
+    });
     const double squares = std::sqrt(squares_i * squares_j);
     tuning_.correlation = squares > 0 ? together / squares : 0;
   }
@@ -246,16 +246,14 @@ class Tuner {
     Tiles tiles(width_, height_);
     TuneRow& result = tuning_.rows[row];
     result.bias_sq = result.variance = 0;
-    each(filtered, unfiltered,
-         [&](std::size_t pixel, int c, std::size_t i, std::size_t j, double weight, double both) {
-           const double f_i = double{filtered[i][pixel][c]}, f_j = double{filtered[j][pixel][c]};
-           const double bias_sq = weight * (f_i - double{unfiltered[i][pixel][c]}) *
-                                  (f_j - double{unfiltered[j][pixel][c]});
-           const double variance = weight * both * (f_i - f_j) * (f_i - f_j);
-           result.bias_sq += bias_sq;
-           result.variance += variance;
-           tiles.add(pixel, bias_sq + variance);
-         });
+    each(filtered, unfiltered, [&](const Place& at) {
+      const double f_i = at.of_i(filtered), f_j = at.of_j(filtered);
+      const double bias_sq = at.weight * (f_i - at.of_i(unfiltered)) * (f_j - at.of_j(unfiltered));
+      const double variance = at.weight * at.shares * (f_i - f_j) * (f_i - f_j);
+      result.bias_sq += bias_sq;
+      result.variance += variance;
+      tiles.add(at.pixel, bias_sq + variance);
+    });
     result.standard_error = tiles.standard_error();
     tiles_[row] = std::move(tiles);
   }
@@ -287,7 +285,8 @@ class Tuner {
   std::vector<double> shares_;    // of a part
   std::vector<Picture> guesses_;  // g, of a pair of parts
   std::vector<Tiles> tiles_;
-  std::uint64_t traversals_ = 0, done_ = 0;
+  std::vector<Traversal> traversals_;
+  std::uint64_t done_ = 0;  // traversals
   Tuning tuning_;
 };
 

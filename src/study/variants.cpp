@@ -1,5 +1,6 @@
 #include "study/variants.h"
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <utility>
@@ -33,11 +34,23 @@ std::vector<VariantGroup> group_variants(std::span<const filter::Parameters> set
   return groups;
 }
 
-ManyRun run_of(const VariantGroup& group, std::size_t first, std::size_t count) {
+std::vector<Traversal> split(std::span<const VariantGroup> groups,
+                             const std::function<std::size_t(const VariantGroup&)>& at_once) {
+  std::vector<Traversal> traversals;
+  for (const VariantGroup& group : groups) {
+    const std::size_t most = at_once(group), radii = group.radii.size();
+    for (std::size_t first = 0; first < radii; first += most) {
+      traversals.push_back({&group, first, std::min(most, radii - first)});
+    }
+  }
+  return traversals;
+}
+
+ManyRun run_of(const Traversal& traversal) {
   ManyRun run;
-  run.parameters = group.parameters;
-  const auto begin = group.radii.begin() + static_cast<std::ptrdiff_t>(first);
-  run.radii.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
+  run.parameters = traversal.group->parameters;
+  const auto begin = traversal.group->radii.begin() + static_cast<std::ptrdiff_t>(traversal.first);
+  run.radii.assign(begin, begin + static_cast<std::ptrdiff_t>(traversal.count));
   return run;
 }
 

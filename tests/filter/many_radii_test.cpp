@@ -130,7 +130,7 @@ TEST_CASE("Many radii agree for the same scale twice, for none and for scales fa
             {1e30, RadiusBasis::world, 0.4}});
 }
 
-TEST_CASE("Many radii agree for the disk, demodulation, chosen sources and iterations") {
+TEST_CASE("Many radii agree where distances, sources or values are out of the ordinary") {
   const std::vector<Radius> radii = grid(RadiusBasis::distance, 0.02, 0.5, 5);
   EngineCase c(900, 11, 0.1);
   c.parameters.weights = tests::terms_of(7);

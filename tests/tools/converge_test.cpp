@@ -85,6 +85,9 @@ TEST_CASE("A convergence study refuses what are no replicates") {
   const Outcome nothing = run("psf converge -o " + folder / "out");
   CHECK(nothing.code == 2);
   CHECK(nothing.err.find("--analytic") != std::string::npos);
+  const Outcome ignored = run("psf converge --analytic --block 2passes -o " + folder / "out");
+  CHECK(ignored.code == 2);
+  CHECK(ignored.err.find("--block") != std::string::npos);
 }
 
 TEST_CASE("On the built-in scenes the slopes are those of theory") {

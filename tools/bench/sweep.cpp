@@ -67,29 +67,17 @@ void add_rows(const study::Dump& dump, const std::string& r0, std::size_t repeat
   many.radii = pairs(largest);
   study::FilterRun one;
   one.parameters.radius = many.radii.front();
-  double neighbors = 0, difference = 0;
+  const auto filter_many = [&] { return study::filter_many(dump, many); };
+  const auto filter_one = [&] { return study::filter_dump(dump, one); };
+  const study::FilterOutcome alone = filter_one();
+  const double difference =
+      largest_difference(filter_many().pictures[0].filtered(0), alone.pictures[0].image().rgb());
   const Turns turns(
-      repeat,
-      [&] {
-        return seconds_of([&] {
-          const study::ManyOutcome outcome = study::filter_many(dump, many);
-          const study::FilterOutcome alone = study::filter_dump(dump, one);
-          neighbors = alone.statistics.mean_neighbors();
-          difference =
-              largest_difference(outcome.pictures[0].filtered(0), alone.pictures[0].image().rgb());
-        });
-      },
-      [&] { return seconds_of([&] { static_cast<void>(study::filter_dump(dump, one)); }); });
-  // The first of a pair holds a single run too, that its result can be compared with.
-  std::vector<double> ratios;
-  for (std::size_t k = 0; k < turns.first.size(); ++k) {
-    ratios.push_back(turns.first[k] / turns.second[k] - 1);
-  }
+      repeat, [&] { return seconds_of(filter_many); }, [&] { return seconds_of(filter_one); });
   rows.push_back({"pairs_" + r0,
-                  fmt::format("64 pairs up to {} / one run, {:.0f} neighbours", r0, neighbors), "x",
-                  spread(ratios), kAtMost5,
-                  fmt::format("{:.3g} s a single run, {} pairs of runs",
-                              spread(turns.second).median, ratios.size())});
+                  fmt::format("64 pairs up to {} / one run, {:.0f} neighbours", r0,
+                              alone.statistics.mean_neighbors()),
+                  "x", turns.ratio(), kAtMost5, turns.detail()});
   rows.push_back({"difference_" + r0, fmt::format("largest difference of a pixel, {}", r0), "",
                   spread({difference}), kSame, "relative, of the largest radius"});
 }

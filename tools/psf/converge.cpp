@@ -173,6 +173,24 @@ std::vector<study::SlopeCheck> check_slopes(const study::Analytic& scene,
   return checks;
 }
 
+// Dumps of a scene that are there as long as they are needed, whatever happens.
+struct Replicates {
+  std::vector<std::string> dumps;
+
+  Replicates(const study::Analytic& scene, const std::filesystem::path& folder) {
+    for (std::size_t r = 0; r < kReplicates; ++r) {
+      dumps.push_back((folder / fmt::format("{}.pvb", r)).string());
+      scene.write_dump(dumps.back(), r + 1, kPasses);
+    }
+  }
+  ~Replicates() {
+    std::error_code ignored;
+    for (const std::string& path : dumps) std::filesystem::remove(path, ignored);
+  }
+  Replicates(const Replicates&) = delete;
+  Replicates& operator=(const Replicates&) = delete;
+};
+
 bool run_analytic(const ConvergeOptions& options, study::AnalyticScene which,
                   std::vector<filter::Parameters> sets) {
   const study::Analytic scene(which);
@@ -186,11 +204,8 @@ bool run_analytic(const ConvergeOptions& options, study::AnalyticScene which,
     set.radius.basis = filter::RadiusBasis::footprint;
     largest = std::max(largest, set.radius.r0);
   }
-  std::vector<std::string> dumps;
-  for (std::size_t r = 0; r < kReplicates; ++r) {
-    dumps.push_back((folder / fmt::format("{}.pvb", r)).string());
-    scene.write_dump(dumps.back(), r + 1, kPasses);
-  }
+  const Replicates replicates(scene, folder);
+  const std::vector<std::string>& dumps = replicates.dumps;
   const std::vector<Rgb> picture = scene.reference();
   study::MetricOptions metric_options;
   const study::Reference reference(picture, study::Analytic::kSize, metric_options,
@@ -214,7 +229,6 @@ bool run_analytic(const ConvergeOptions& options, study::AnalyticScene which,
   progress.finish();
   report.checks = check_slopes(scene, report.series, metric_options.epsilon, convergence.region);
   write(folder.string(), report);
-  for (const std::string& path : dumps) std::filesystem::remove(path);
   fmt::print("{}\n", scene.name());
   print_checks(report);
   return std::all_of(report.checks.begin(), report.checks.end(),
@@ -267,8 +281,16 @@ void add_converge(CLI::App& app) {
   command->add_flag("--all-metrics", options->all_metrics, "SSIM and FLIP too: slower");
   command->add_flag("--no-times", options->no_times,
                     "do not run each set once more to take its time");
-  command->add_flag("--analytic", options->analytic,
-                    "built-in scenes with known answers: are the slopes those of theory?");
+  const std::vector<CLI::Option*> others = command->get_options();
+  CLI::Option* analytic = command->add_flag(
+      "--analytic", options->analytic,
+      "built-in scenes with known answers: are the slopes those of theory? Takes -o, --r0 and "
+      "--delta");
+  for (CLI::Option* other : others) {
+    const std::string name = other->get_name();
+    const bool fits = name == "--help" || name == "--output" || name == "--r0" || name == "--delta";
+    if (!fits) analytic->excludes(other);
+  }
   add_common(*command, options->common);
   set_example(*command,
               "psf converge a.pvb b.pvb c.pvb --reference reference.exr --r0 8px,16px --delta "

@@ -14,6 +14,7 @@
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/seconds.h"
 #include "filter_options.h"
 #include "filter_report.h"
 #include "pass_range.h"
@@ -25,10 +26,8 @@
 namespace psf::tools {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+using core::Clock;
+using core::seconds_since;
 
 constexpr std::size_t kProgressSteps = 1000;
 constexpr std::chrono::milliseconds kBetweenLooks{200};

@@ -78,8 +78,6 @@ class RingWalk {
   }
 
  private:
-  static constexpr std::size_t kQuad = kRecordsBelow[kQuads];
-
   // Of the nodes of a family: which have every pair in one ring, and in which.
   struct OneRing {
     std::uint32_t nodes = 0;
@@ -120,9 +118,12 @@ class RingWalk {
   HWY_INLINE void visit_groups(std::size_t parent) {
     const Judged judged = judge_.nodes(kGroups, parent, judge_.groups_of(parent));
     if (judged.touched == 0) return;
-    const OneRing one = in_one_ring(tree_.bounds(kGroups, parent), tree_.plan().count);
-    const std::uint32_t whole = judged.closed & one.nodes;
-    add_whole(kGroups, parent, whole, one);
+    std::uint32_t whole = judged.whole();
+    if (whole != 0) {
+      const OneRing one = in_one_ring(tree_.bounds(kGroups, parent), tree_.plan().count);
+      whole &= one.nodes;
+      add_whole(kGroups, parent, whole, one);
+    }
     for (std::uint32_t left = judged.touched & ~whole; left != 0; left &= left - 1) {
       const std::uint32_t place = lowest_bit(left);
       add_group(parent * kWidth + place, judged.open_at(place));

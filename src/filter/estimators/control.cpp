@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 
 #include "core/error.h"
+#include "core/seconds.h"
 #include "filter/estimators/scramble.h"
 #include "filter/inputs.h"
 #include "filter/orphans.h"
@@ -16,10 +16,8 @@
 namespace psf::filter {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
+using core::Clock;
+using core::seconds_since;
 
 // Of all cameras.
 std::uint64_t pixel_of(const Records& records, std::uint32_t i) {
