@@ -25,6 +25,9 @@ std::size_t queries_of_slab() {
   return engine::RingEngine::kGrain * kRangesAThread * core::thread_count();
 }
 
+// One that is filled while the one before it is handed on.
+constexpr std::size_t kSlabs = 2;
+
 // Distinct scales, ascending, and where each radius is among them.
 struct Scales {
   std::vector<double> values;
@@ -40,10 +43,7 @@ struct Scales {
                                             values.begin()));
     }
   }
-  [[nodiscard]] bool can_share() const {
-    return values.back() > 0 && values.size() <= kMostRings &&
-           std::all_of(values.begin(), values.end(), engine::RingTable::takes);
-  }
+  [[nodiscard]] bool can_share() const { return values.back() > 0 && values.size() <= kMostRings; }
 };
 
 bool can_share(const Parameters& parameters) {
@@ -103,36 +103,56 @@ class Many {
     return true;
   }
 
+  // A slab is handed on beside the averages of the next one.
   void traverse(const engine::RingEngine& engine, const Roles& roles, const Scales& scales,
                 std::vector<Statistics>& by_scale) {
-    constexpr std::size_t kGrain = engine::RingEngine::kGrain;
-    const std::size_t rings = scales.values.size(), columns = radii_.size();
-    const std::size_t slab = queries_of_slab();
+    const std::size_t columns = radii_.size(), slab = queries_of_slab();
     const std::span<const std::uint32_t> queries = engine.queries();
-    std::vector<Rgb> c_bar(std::min(slab, queries.size()) * columns);
-    for (std::size_t first = 0; first < queries.size(); first += slab) {
+    std::vector<Rgb> c_bar[kSlabs];
+    for (std::vector<Rgb>& one : c_bar) one.resize(std::min(slab, queries.size()) * columns);
+    core::Aside hand_on;
+    for (std::size_t first = 0, k = 0; first < queries.size(); first += slab, ++k) {
       core::throw_if_interrupted("no picture was written");
-      const std::span some = queries.subspan(first, std::min(slab, queries.size() - first));
-      std::vector<std::vector<Statistics>> parts(core::range_count(some.size(), kGrain));
-      core::parallel_for(some.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        std::vector<Statistics>& part = parts[begin / kGrain];
-        part.resize(rings);
-        std::size_t to = begin * columns;
-        engine.average(first + begin, first + end, part,
-                       [&](const engine::RingEngine::Results& results) {
-                         const std::uint32_t i = results.query;
-                         const bool source = roles.of[i] == Role::source;
-                         for (std::size_t k = 0; k < columns; ++k, ++to) {
-                           const std::size_t from = scales.of[k];
-                           c_bar[to] = finished(results.average[from], results.neighbors[from],
-                                                source, results.radius[from], r_, i, parameters_);
-                         }
-                       });
+      std::vector<Rgb>& to = c_bar[k % kSlabs];
+      const std::size_t last = std::min(first + slab, queries.size());
+      average_slab(engine, roles, scales, first, last, to, by_scale);
+      hand_on.wait();
+      hand_on.start([this, some = queries.subspan(first, last - first), columns, &to] {
+        on_slab_({some, 0, columns, std::span(to).first(some.size() * columns)});
       });
-      for (const std::vector<Statistics>& part : parts) {
-        for (std::size_t k = 0; k < rings; ++k) by_scale[k] += part[k];
-      }
-      on_slab_({some, 0, columns, c_bar});
+    }
+    hand_on.wait();
+  }
+
+  void average_slab(const engine::RingEngine& engine, const Roles& roles, const Scales& scales,
+                    std::size_t first, std::size_t last, std::span<Rgb> c_bar,
+                    std::vector<Statistics>& by_scale) {
+    constexpr std::size_t kGrain = engine::RingEngine::kGrain;
+    const std::size_t columns = radii_.size();
+    const bool is_finished = !parameters_.demodulate && parameters_.estimator == Estimator::average;
+    std::vector<std::vector<Statistics>> parts(core::range_count(last - first, kGrain));
+    core::parallel_for(last - first, kGrain, [&](std::size_t begin, std::size_t end) {
+      std::vector<Statistics>& part = parts[begin / kGrain];
+      part.resize(by_scale.size());
+      std::size_t to = begin * columns;
+      engine.average(first + begin, first + end, part,
+                     [&](const engine::RingEngine::Results& results) {
+                       const std::uint32_t i = results.query;
+                       if (is_finished) {
+                         for (const std::size_t from : scales.of)
+                           c_bar[to++] = results.average[from];
+                         return;
+                       }
+                       const bool source = roles.of[i] == Role::source;
+                       for (std::size_t k = 0; k < columns; ++k, ++to) {
+                         const std::size_t from = scales.of[k];
+                         c_bar[to] = finished(results.average[from], results.neighbors[from],
+                                              source, engine.radius(i, from), r_, i, parameters_);
+                       }
+                     });
+    });
+    for (const std::vector<Statistics>& part : parts) {
+      for (std::size_t k = 0; k < by_scale.size(); ++k) by_scale[k] += part[k];
     }
   }
 
@@ -177,7 +197,7 @@ ManyAverages average_many(const Records& records, const Block& block, const Para
 }
 
 std::uint64_t memory_of_slab(std::size_t radii) {
-  return queries_of_slab() * radii * sizeof(Rgb);
+  return kSlabs * queries_of_slab() * radii * sizeof(Rgb);
 }
 
 }  // namespace psf::filter

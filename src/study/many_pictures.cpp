@@ -1,6 +1,7 @@
 #include "study/many_pictures.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "core/parallel.h"
 
@@ -27,7 +28,8 @@ Rgb mean(const double* sum, const double* more, double paths) {
 }  // namespace
 
 ManyPictures::ManyPictures(const filter::CameraView& camera, std::size_t radii)
-    : filtered_(core::range_count(radii, kTogether) * kTogether * 3 * camera.width * camera.height),
+    : groups_(core::range_count(radii, kTogether)),
+      filtered_(groups_ * kTogether * 3 * camera.width * camera.height),
       u_(std::size_t{camera.width} * camera.height * 3),
       paths_(std::size_t{camera.width} * camera.height),
       input_(camera.width, camera.height) {}
@@ -50,30 +52,38 @@ void ManyPictures::add_record(const filter::Records& records, filter::Role role,
 
 std::uint32_t ManyPictures::add_filtered(const filter::Records& records, std::size_t i,
                                          std::size_t begin, std::size_t count, const Rgb* c_bar) {
+  constexpr std::size_t kValues = 3 * kTogether, kPattern = 12;
+  static_assert(kValues % kPattern == 0);
   const Rgb& alpha = records.throughput[i];
   const std::size_t group = begin / kTogether, first = begin % kTogether;
-  double* sum = &filtered_[(group * paths_.size() + records.pixel[i]) * kTogether * 3];
-  // What is not asked for is 0, so that all loops have one length.
-  Rgb values[kTogether];
-  std::fill(values, values + kTogether, Rgb(0, 0, 0));  // they are born with any value
-  float check = 0;
+  double* sum = &filtered_[(records.pixel[i] * groups_ + group) * kValues];
+  // What is not asked for is 0, so that all loops have one length, which compilers turn into
+  // vectors.
+  float value[kValues] = {}, factor[kPattern], check[4] = {};
   for (std::size_t k = 0; k < count; ++k) {
-    values[first + k] = Rgb(alpha.x * c_bar[k].x, alpha.y * c_bar[k].y, alpha.z * c_bar[k].z);
+    for (std::size_t c = 0; c < 3; ++c) value[3 * (first + k) + c] = c_bar[k][static_cast<int>(c)];
   }
-  for (const Rgb& value : values) check += 0 * value.x + 0 * value.y + 0 * value.z;
+  for (std::size_t t = 0; t < kPattern; t += 3) {
+    factor[t] = alpha.x;
+    factor[t + 1] = alpha.y;
+    factor[t + 2] = alpha.z;
+  }
+  for (std::size_t from = 0; from < kValues; from += kPattern) {
+    for (std::size_t t = 0; t < kPattern; ++t) value[from + t] *= factor[t];
+  }
+  for (std::size_t from = 0; from < kValues; from += 4) {
+    for (std::size_t t = 0; t < 4; ++t) check[t] += 0 * value[from + t];
+  }
   std::uint32_t overflows = 0;
-  if (!(check == 0)) {
+  if (!(check[0] + check[1] + check[2] + check[3] == 0)) {
     for (std::size_t k = 0; k < count; ++k) {
-      if (is_finite(values[first + k])) continue;
+      float* one = value + 3 * (first + k);
+      if (is_finite(Rgb(one[0], one[1], one[2]))) continue;
       overflows |= 1u << k;
-      values[first + k] = Rgb(0, 0, 0);
+      std::fill(one, one + 3, 0.0f);
     }
   }
-  for (std::size_t k = 0; k < kTogether; ++k) {
-    sum[3 * k] += double{values[k].x};
-    sum[3 * k + 1] += double{values[k].y};
-    sum[3 * k + 2] += double{values[k].z};
-  }
+  for (std::size_t t = 0; t < kValues; ++t) sum[t] += double{value[t]};
   return overflows;
 }
 
@@ -116,14 +126,19 @@ std::uint64_t add_slab(const filter::Records& records, const filter::Slab& slab,
     std::size_t record, radius;
   };
   std::vector<std::vector<Overflow>> overflows(core::range_count(slab.count, kTogether));
-  core::parallel_for(slab.count, kTogether, [&](std::size_t begin, std::size_t end) {
+  const std::size_t groups = core::range_count(slab.count, kTogether);
+  const std::size_t share = core::range_count(groups, core::thread_count()) * kTogether;
+  core::parallel_for(slab.count, share, [&](std::size_t first, std::size_t last) {
     for (std::size_t q = 0; q < slab.queries.size(); ++q) {
       const std::size_t i = slab.queries[q];
-      const Rgb* c_bar = &slab.c_bar[q * slab.count + begin];
-      std::uint32_t bits = pictures[camera_of(records, i)].add_filtered(
-          records, i, slab.first + begin, end - begin, c_bar);
-      for (std::size_t k = begin; bits != 0; ++k, bits >>= 1) {
-        if ((bits & 1) != 0) overflows[begin / kTogether].push_back({i, slab.first + k});
+      ManyPictures& picture = pictures[camera_of(records, i)];
+      const Rgb* c_bar = &slab.c_bar[q * slab.count];
+      for (std::size_t begin = first; begin < last; begin += kTogether) {
+        std::uint32_t bits = picture.add_filtered(records, i, slab.first + begin,
+                                                  std::min(kTogether, last - begin), c_bar + begin);
+        for (std::size_t k = begin; bits != 0; ++k, bits >>= 1) {
+          if ((bits & 1) != 0) overflows[begin / kTogether].push_back({i, slab.first + k});
+        }
       }
     }
   });

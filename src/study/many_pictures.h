@@ -53,10 +53,11 @@ class ManyPictures {
 
   [[nodiscard]] const double* filtered_sum(std::size_t pixel, std::size_t k) const {
     const std::size_t group = k / kTogether;
-    return &filtered_[((group * paths_.size() + pixel) * kTogether + k % kTogether) * 3];
+    return &filtered_[((pixel * groups_ + group) * kTogether + k % kTogether) * 3];
   }
 
-  std::vector<double> filtered_;      // (groups of radii, pixels, kTogether, 3) of alpha c_bar
+  std::size_t groups_;                // of kTogether radii
+  std::vector<double> filtered_;      // (pixels, groups, kTogether, 3) of alpha c_bar
   std::vector<double> u_;             // (pixels, 3)
   std::vector<std::uint64_t> paths_;  // of a pixel
   film::Film input_;

@@ -46,9 +46,13 @@ void average_on(const Tree& tree, const WeightTerms& terms, std::span<const std:
   AverageWalk(tree, terms, packet).run(parents);
 }
 
-void average_rings_on(const Tree& tree, const WeightTerms& terms, const RingTable& table,
+void average_rings_on(const Tree& tree, const WeightTerms& terms,
                       std::span<const std::uint32_t> parents, Packet& packet, RingPacket& rings) {
-  RingWalk(tree, terms, table, packet, rings).run(parents);
+  RingWalk(tree, terms, packet, rings).run(parents);
+}
+
+void average_balls_on(const RingPacket& rings, std::size_t q, const RingMeans& means) {
+  means_of_balls(rings, q, means);
 }
 
 void count_on(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
@@ -65,6 +69,7 @@ namespace psf::filter::engine {
 HWY_EXPORT(extremes_on);
 HWY_EXPORT(average_on);
 HWY_EXPORT(average_rings_on);
+HWY_EXPORT(average_balls_on);
 HWY_EXPORT(count_on);
 
 void extremes(const ColumnPlan& plan, std::size_t columns, const float* lows, const float* highs,
@@ -75,9 +80,12 @@ void average(const Tree& tree, const WeightTerms& terms, std::span<const std::ui
              Packet& packet) {
   HWY_DYNAMIC_DISPATCH(average_on)(tree, terms, parents, packet);
 }
-void average_rings(const Tree& tree, const WeightTerms& terms, const RingTable& table,
+void average_rings(const Tree& tree, const WeightTerms& terms,
                    std::span<const std::uint32_t> parents, Packet& packet, RingPacket& rings) {
-  HWY_DYNAMIC_DISPATCH(average_rings_on)(tree, terms, table, parents, packet, rings);
+  HWY_DYNAMIC_DISPATCH(average_rings_on)(tree, terms, parents, packet, rings);
+}
+void average_balls(const RingPacket& rings, std::size_t q, const RingMeans& means) {
+  HWY_DYNAMIC_DISPATCH(average_balls_on)(rings, q, means);
 }
 void count_pairs(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
                  const Packet& packet, PairCounts& counts) {

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "filter/engine/ring_table.h"
 #include "filter/engine/tree.h"
 #include "filter/weights.h"
 
@@ -34,16 +33,27 @@ struct Packet {
   alignas(64) std::int32_t met_itself[kWidth];
 };
 
-// What a packet needs for several radii, of which Packet has the largest; borrowed. (16, rings) and
-// so on are those of a RingTable.
+// What a packet needs for several radii, of which Packet has the largest; all borrowed. Ring k
+// holds what is in ball k and not in ball k - 1.
 struct RingPacket {
-  alignas(64) float inverse_basis_sq[kWidth];  // 1 / f_i^2; NaN where it is not within the table's
-                                               // limits: then every pair is compared
-  const float* r;                              // (16, rings) world units
-  const float* r_sq;                           // (16, rings)
+  std::size_t count;  // of rings
+  const float* r_sq;  // (count, 16) squared world units, ascending for each query
+  // The least and the greatest of each ring, or less and more; infinity beyond count, up to a
+  // multiple of 16.
+  const float* least_r_sq;
+  const float* greatest_r_sq;
+  const float* plane_reach;  // (count, 16) t r_i of `plane`, where it is on
   // What the walk adds to: sums of the values that pass, red, green, blue, and how many.
-  double* sums;   // (16, rings + 1, 4); the last ring is of no use
-  double* whole;  // (rings, 4), for every query
+  double* sums;   // (16, count + 1, 4); the last ring is of no use
+  double* whole;  // (count, 4), for every query
+};
+
+// What one query averages, for all radii; all borrowed, and written.
+struct RingMeans {
+  float* average;            // (count, 3), and one more; anything where there are no neighbours
+  std::uint32_t* neighbors;  // (count)
+  double* balls;             // (count, 4) red, green, blue and how many
+  double* inverse;           // of how many; as long as RingPacket's least_r_sq
 };
 
 // Counts of pairs for the statistics, the pair (i, i) included.
@@ -63,9 +73,12 @@ void extremes(const ColumnPlan& plan, std::size_t columns, const float* lows, co
 void average(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
              Packet& packet);
 
-// The same by rings, for all radii of `table` in one walk; sets packet.met_itself too.
-void average_rings(const Tree& tree, const WeightTerms& terms, const RingTable& table,
+// The same by rings, for all radii in one walk; sets packet.met_itself too.
+void average_rings(const Tree& tree, const WeightTerms& terms,
                    std::span<const std::uint32_t> parents, Packet& packet, RingPacket& rings);
+
+// Of the q-th query of the packet, whose rings are complete.
+void average_balls(const RingPacket& rings, std::size_t q, const RingMeans& means);
 
 // Adds to `counts` the pairs of the packet's queries with the sources below the given parents.
 void count_pairs(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,

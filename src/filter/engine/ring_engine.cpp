@@ -1,6 +1,7 @@
 #include "filter/engine/ring_engine.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -12,10 +13,6 @@
 
 namespace psf::filter::engine {
 
-// Red, green, blue and a count; in the order of RingPacket's sums. A type of both compilers, which
-// adds and multiplies four at once.
-using Quadruple = double __attribute__((vector_size(4 * sizeof(double)), aligned(8), may_alias));
-
 // What Statistics counts of queries, by radius, close together.
 class QueryCounts {
  public:
@@ -24,10 +21,12 @@ class QueryCounts {
         least_(radii, std::numeric_limits<std::uint32_t>::max()),
         most_(radii, 0) {}
 
-  void add(std::size_t k, std::uint32_t neighbors) {
-    accepted_[k] += neighbors;
-    least_[k] = std::min(least_[k], neighbors);
-    most_[k] = std::max(most_[k], neighbors);
+  void add(std::span<const std::uint32_t> neighbors) {
+    for (std::size_t k = 0; k < neighbors.size(); ++k) {
+      accepted_[k] += neighbors[k];
+      least_[k] = std::min(least_[k], neighbors[k]);
+      most_[k] = std::max(most_[k], neighbors[k]);
+    }
   }
   void add_to(std::span<Statistics> statistics) const {
     for (std::size_t k = 0; k < statistics.size(); ++k) {
@@ -50,83 +49,96 @@ class RingEngine::Range {
         const std::function<void(const Results&)>& visit)
       : e_(engine),
         p_(engine.p_),
-        rings_(engine.table_.rings()),
+        rings_(engine.scales_.size()),
         statistics_(statistics),
         visit_(visit),
-        r_(kWidth * rings_),
         r_sq_(kWidth * rings_),
+        least_r_sq_(padded(rings_)),
+        greatest_r_sq_(padded(rings_)),
+        plane_reach_(p_.weights.terms().plane ? kWidth * rings_ : 0),
         sums_(kWidth * (rings_ + 1) * 4),
         whole_(rings_ * 4),
-        average_(rings_),
+        balls_(rings_ * 4),
+        inverse_(padded(rings_)),
         neighbors_(rings_),
-        queries_(rings_) {}
+        average_(rings_ + 1),
+        queries_(rings_) {
+    std::fill(inverse_.begin(), inverse_.end(), 1.0);
+  }
 
   void add_counts() const { queries_.add_to(statistics_); }
 
   void average(std::span<const std::uint32_t> queries, std::span<const std::uint32_t> nodes,
                Packet& packet) {
-    RingPacket rings{{}, r_.begin(), r_sq_.begin(), sums_.begin(), whole_.begin()};
-    set_radii(queries, rings);
+    set_radii(queries);
     std::fill(sums_.begin(), sums_.end(), 0.0);
     std::fill(whole_.begin(), whole_.end(), 0.0);
-    average_rings(e_.packets_.tree(), p_.weights.terms(), e_.table_, nodes, packet, rings);
+    RingPacket rings{rings_,
+                     r_sq_.begin(),
+                     least_r_sq_.begin(),
+                     greatest_r_sq_.begin(),
+                     plane_reach_.begin(),
+                     sums_.begin(),
+                     whole_.begin()};
+    average_rings(e_.packets_.tree(), p_.weights.terms(), nodes, packet, rings);
     for (std::size_t q = 0; q < queries.size(); ++q) {
-      finish(queries[q], q, packet.met_itself[q] != 0);
+      finish(queries[q], q, rings, packet.met_itself[q] != 0);
     }
   }
 
  private:
-  void set_radii(std::span<const std::uint32_t> queries, RingPacket& rings) {
-    const std::span<const double> scales = e_.table_.scales();
+  static constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+  static std::size_t padded(std::size_t rings) { return (rings + kWidth - 1) / kWidth * kWidth; }
+
+  static float squared(float r) { return std::max(0.0f, r * r); }  // NaN: of an empty ball
+
+  void set_radii(std::span<const std::uint32_t> queries) {
+    double f[kWidth];
     for (std::size_t q = 0; q < kWidth; ++q) {
-      const double f = e_.basis_[queries[std::min(q, queries.size() - 1)]];
-      const bool within = f * f >= RingTable::kLeastBasisSq && f * f <= RingTable::kLargestBasisSq;
-      rings.inverse_basis_sq[q] =
-          within ? static_cast<float>(1 / (f * f)) : std::numeric_limits<float>::quiet_NaN();
-      float* r = &r_[q * rings_];
-      float* r_sq = &r_sq_[q * rings_];
-      for (std::size_t k = 0; k < rings_; ++k) {
-        r[k] = static_cast<float>(scales[k] * f);
-        r_sq[k] = r[k] * r[k];
+      f[q] = e_.basis_[queries[std::min(q, queries.size() - 1)]];
+    }
+    const bool finite = std::all_of(f, f + kWidth, [](double v) { return std::isfinite(v); });
+    const auto [least, greatest] = std::minmax_element(f, f + kWidth);
+    const float reach = p_.weights.terms().plane.value_or(0);
+    for (std::size_t k = 0; k < rings_; ++k) {
+      const double scale = e_.scales_[k];
+      float* r_sq = &r_sq_[k * kWidth];
+      for (std::size_t q = 0; q < kWidth; ++q) r_sq[q] = squared(static_cast<float>(scale * f[q]));
+      least_r_sq_[k] = finite ? squared(static_cast<float>(scale * *least)) : 0;
+      greatest_r_sq_[k] = finite ? squared(static_cast<float>(scale * *greatest)) : kInfinity;
+      for (std::size_t q = 0; q < kWidth && plane_reach_.size() > 0; ++q) {
+        const float of_q = reach * static_cast<float>(scale * f[q]);
+        plane_reach_[k * kWidth + q] = std::isnan(of_q) ? -1 : of_q;
       }
     }
+    std::fill(least_r_sq_.begin() + rings_, least_r_sq_.end(), kInfinity);
+    std::fill(greatest_r_sq_.begin() + rings_, greatest_r_sq_.end(), kInfinity);
   }
 
   // Query i, the q-th of its packet; `met`: the walk met i itself, in its first ring.
-  void finish(std::uint32_t i, std::size_t q, bool met) {
+  void finish(std::uint32_t i, std::size_t q, const RingPacket& rings, bool met) {
     const bool source = e_.packets_.is_source(i);
-    const float* r = &r_[q * rings_];
     // Whether i is in the sums of every radius that it must be in.
-    const bool is_in = !source || (met && r_sq_[q * rings_] > 0);
+    const bool is_in = !source || (met && r_sq_[q] > 0);
     const bool simple = is_in && p_.area.empty();
-    const auto* ring = reinterpret_cast<const Quadruple*>(&sums_[q * (rings_ + 1) * 4]);
-    const auto* whole = reinterpret_cast<const Quadruple*>(whole_.begin());
-    Quadruple ball = {0, 0, 0, 0};
+    average_balls(rings, q, {&average_[0].x, neighbors_.begin(), balls_.begin(), inverse_.begin()});
     std::optional<Rgb> adopted;
-    for (std::size_t k = 0; k < rings_; ++k) {
-      ball += ring[k] + whole[k];
-      const auto count = static_cast<std::uint32_t>(static_cast<std::int64_t>(ball[3]));
-      if (simple && count > 0) {
-        // One division for three: most of the time that is spent here. Of n equal values it is
-        // that value too.
-        const Quadruple mean = ball * (1 / ball[3]);
-        average_[k] = Rgb(static_cast<float>(mean[0]), static_cast<float>(mean[1]),
-                          static_cast<float>(mean[2]));
-        neighbors_[k] = count;
-      } else {
-        finish_one(i, r[k], k, ball, source && !(met && r_sq_[q * rings_ + k] > 0), adopted);
-      }
-      queries_.add(k, neighbors_[k]);
+    for (std::size_t k = 0; k < rings_ && !(simple && neighbors_[k] > 0); ++k) {
+      finish_one(i, k, source && !(met && r_sq_[k * kWidth + q] > 0), adopted);
     }
-    visit_({i, {r, rings_}, average_, neighbors_});
+    const std::span<const std::uint32_t> neighbors(neighbors_.begin(), rings_);
+    queries_.add(neighbors);
+    visit_({i, std::span(average_).first(rings_), neighbors});
   }
 
-  // `add_own`: i is not in `ball`.
-  void finish_one(std::uint32_t i, float r_i, std::size_t k, const Quadruple& ball, bool add_own,
-                  std::optional<Rgb>& adopted) {
+  // `add_own`: i is not in the ball.
+  void finish_one(std::uint32_t i, std::size_t k, bool add_own, std::optional<Rgb>& adopted) {
     const bool disk = !p_.area.empty();
+    const float r_i = e_.radius(i, k);
+    const double* ball = &balls_[4 * k];
     Sum sum{ball[0], ball[1], ball[2]};
-    auto count = static_cast<std::uint32_t>(static_cast<std::int64_t>(ball[3]));
+    std::uint32_t count = neighbors_[k];
     if (add_own) {
       sum.add(e_.values_[i], disk ? double{p_.area[i]} : 1);
       ++count;
@@ -156,11 +168,13 @@ class RingEngine::Range {
   std::size_t rings_;
   std::span<Statistics> statistics_;
   const std::function<void(const Results&)>& visit_;
-  core::Buffer<float> r_, r_sq_;  // (16, rings)
-  core::Buffer<double> sums_;     // (16, rings + 1, 4)
-  core::Buffer<double> whole_;    // (rings, 4)
+  core::Buffer<float> r_sq_, least_r_sq_, greatest_r_sq_, plane_reach_;  // as RingPacket has them
+  core::Buffer<double> sums_;                                            // (16, rings + 1, 4)
+  core::Buffer<double> whole_;                                           // (rings, 4)
+  // Of a query, as RingMeans has them.
+  core::Buffer<double> balls_, inverse_;
+  core::Buffer<std::uint32_t> neighbors_;
   std::vector<Rgb> average_;
-  std::vector<std::uint32_t> neighbors_;
   QueryCounts queries_;
   bool matched_ = true;  // of the orphan that was adopted last
 };

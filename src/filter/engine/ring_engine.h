@@ -14,14 +14,13 @@ namespace psf::filter::engine {
 class RingEngine {
  public:
   // The radii of record i are float(scale * basis[i]), as of radius.h; problem.radius is the
-  // largest one. `scales`: as RingTable takes them. All borrowed, but the scales.
+  // largest one. `scales`: ascending, distinct. All borrowed.
   RingEngine(const Problem& problem, std::span<const double> scales, std::span<const double> basis)
-      : p_(problem), basis_(basis), table_(scales), packets_(problem) {}
+      : p_(problem), scales_(scales), basis_(basis), packets_(problem) {}
 
   // What a query is given for every scale, ascending; valid during a call.
   struct Results {
-    std::uint32_t query;            // record number
-    std::span<const float> radius;  // r_i
+    std::uint32_t query;  // record number
     std::span<const Rgb> average;
     std::span<const std::uint32_t> neighbors;  // sources averaged; 0 for an orphan
   };
@@ -29,6 +28,10 @@ class RingEngine {
   // Where it is not, nothing else may be asked.
   [[nodiscard]] bool is_moderate() const { return packets_.is_moderate(); }
   [[nodiscard]] std::span<const std::uint32_t> queries() const { return packets_.order(); }
+  // r_i of record i for a scale.
+  [[nodiscard]] float radius(std::uint32_t i, std::size_t scale) const {
+    return static_cast<float>(scales_[scale] * basis_[i]);
+  }
   // values[j] of every source, by record number; before average().
   void set_values(std::span<const Rgb> values);
 
@@ -42,9 +45,8 @@ class RingEngine {
   class Range;
 
   const Problem& p_;
-  std::span<const double> basis_;
+  std::span<const double> scales_, basis_;
   std::span<const Rgb> values_;
-  RingTable table_;
   Packets packets_;
 };
 

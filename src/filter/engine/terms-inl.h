@@ -145,12 +145,16 @@ struct Plane {
   Distance position;   // of the query
   V n_x, n_y, n_z, reach;
 
+  // How far it is from the query's plane.
+  template <class Source>
+  [[nodiscard]] HWY_INLINE V off(const Source& source) const {
+    return hn::Abs(sum_of_products(hn::Sub(source.column(0), position.x), n_x,
+                                   hn::Sub(source.column(1), position.y), n_y,
+                                   hn::Sub(source.column(2), position.z), n_z));
+  }
   template <class Source>
   [[nodiscard]] HWY_INLINE M pass(const Source& source) const {
-    const V off = sum_of_products(hn::Sub(source.column(0), position.x), n_x,
-                                  hn::Sub(source.column(1), position.y), n_y,
-                                  hn::Sub(source.column(2), position.z), n_z);
-    return hn::Le(hn::Abs(off), reach);
+    return hn::Le(off(source), reach);
   }
   [[nodiscard]] HWY_INLINE Verdict judge(const PacketBounds& queries,
                                          const FamilyBounds& nodes) const {
@@ -197,6 +201,11 @@ class Terms {
     return pass;
   }
 
+  [[nodiscard]] HWY_INLINE Plane plane() const {
+    const std::size_t n = *plan_.normal;
+    const V reach = hn::Load(kD, packet_.plane_reach + lane_);
+    return {n, distance(0), column(n), column(n + 1), column(n + 2), reach};
+  }
   // Calls visit(k, term, first column of the sources that it looks at) for the terms of `bits`.
   template <class Visit>
   HWY_INLINE void each(std::uint32_t bits, const Visit& visit) const {
@@ -212,12 +221,7 @@ class Terms {
       const std::size_t c = *plan_.hit_distance;
       visit(std::size_t{3}, HitDistance{c, column(c), hn::Set(kD, *on_.hit_distance)}, c);
     }
-    if (wants(4)) {
-      const std::size_t n = *plan_.normal;
-      const V reach = hn::Load(kD, packet_.plane_reach + lane_);
-      visit(std::size_t{4}, Plane{n, distance(0), column(n), column(n + 1), column(n + 2), reach},
-            std::size_t{0});
-    }
+    if (wants(4)) visit(std::size_t{4}, plane(), std::size_t{0});
     if (wants(5)) {
       visit(std::size_t{5}, cosine(*plan_.direction, *on_.direction), *plan_.direction);
     }

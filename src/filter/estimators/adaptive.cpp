@@ -50,7 +50,7 @@ bool in_one_traversal(const Problem& problem, std::span<const Rgb> values, doubl
       std::array<Moments, kAdaptiveRadii> balls;
       for (std::size_t k = 0; k < balls.size(); ++k)
         balls[k] = moments_of(results.average[k], results.neighbors[k]);
-      out[results.query] = results.radius[last_that_agrees(balls, agree)];
+      out[results.query] = rings.radius(results.query, last_that_agrees(balls, agree));
     });
   });
   return true;
