@@ -129,24 +129,22 @@ class RingWalk {
   // The records of a group, pair by pair.
   HWY_INLINE void add_group(std::size_t group, std::uint32_t open, const Window& window) {
     const double* values = tree_.values(group);
-    alignas(64) double value[kWidth][4];
     for (std::size_t k = 0; k < kWidth; ++k) {
-      value[k][0] = values[k];
-      value[k][1] = values[kWidth + k];
-      value[k][2] = values[2 * kWidth + k];
-      value[k][3] = 1;
+      value_[k][0] = values[k];
+      value_[k][1] = values[kWidth + k];
+      value_[k][2] = values[2 * kWidth + k];
+      value_[k][3] = 1;
     }
     for (std::size_t lane = 0; lane < kWidth; lane += kLanes) {
       const Pairs pairs(*this, group, open, lane);
       std::int32_t source[kWidth + kLanes];
       const std::size_t n = list(pairs.met, 0, source);
       // First where all go, so that additions do not wait.
-      alignas(64) std::int32_t place_of[kWidth + kAtOnce][kLanes];
       for (std::size_t k = n; k % kAtOnce != 0; ++k) source[k] = source[0];
       for (std::size_t k = 0; k < n; k += kAtOnce) {
-        find_places(pairs, source + k, window, lane, place_of + k);
+        find_places(pairs, source + k, window, lane, place_of_ + k);
       }
-      for (std::size_t k = 0; k < n; ++k) add_pairs(place_of[k], value[source[k]], rings_.sums);
+      for (std::size_t k = 0; k < n; ++k) add_pairs(place_of_[k], value_[source[k]], rings_.sums);
     }
   }
 
@@ -241,6 +239,9 @@ class RingWalk {
   RingPacket& rings_;
   Terms terms_;
   Judge judge_;
+  // Of the group at hand: red, green, blue and 1 of its sources, and where they go.
+  alignas(64) double value_[kWidth][4];
+  alignas(64) std::int32_t place_of_[kWidth + kAtOnce][kLanes];
 };
 
 }  // namespace psf::filter::engine::HWY_NAMESPACE
