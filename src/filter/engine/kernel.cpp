@@ -47,7 +47,8 @@ void average_on(const Tree& tree, const WeightTerms& terms, std::span<const std:
 }
 
 void average_rings_on(const Tree& tree, const WeightTerms& terms,
-                      std::span<const std::uint32_t> parents, Packet& packet, RingPacket& rings) {
+                      std::span<const std::uint32_t> parents, Packet& packet,
+                      const RingPacket& rings) {
   RingWalk(tree, terms, packet, rings).run(parents);
 }
 
@@ -81,7 +82,8 @@ void average(const Tree& tree, const WeightTerms& terms, std::span<const std::ui
   HWY_DYNAMIC_DISPATCH(average_on)(tree, terms, parents, packet);
 }
 void average_rings(const Tree& tree, const WeightTerms& terms,
-                   std::span<const std::uint32_t> parents, Packet& packet, RingPacket& rings) {
+                   std::span<const std::uint32_t> parents, Packet& packet,
+                   const RingPacket& rings) {
   HWY_DYNAMIC_DISPATCH(average_rings_on)(tree, terms, parents, packet, rings);
 }
 void average_balls(const RingPacket& rings, std::size_t q, const RingMeans& means) {

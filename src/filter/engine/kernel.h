@@ -44,7 +44,7 @@ struct RingPacket {
   const float* greatest_r_sq;
   const float* plane_reach;  // (count, 16) t r_i of `plane`, where it is on
   // What the walk adds to: sums of the values that pass, red, green, blue, and how many.
-  double* sums;   // (16, count + 1, 4); the last ring is of no use
+  double* sums;   // (count + 1, 16, 4); the last ring is of no use
   double* whole;  // (count, 4), for every query
 };
 
@@ -75,7 +75,7 @@ void average(const Tree& tree, const WeightTerms& terms, std::span<const std::ui
 
 // The same by rings, for all radii in one walk; sets packet.met_itself too.
 void average_rings(const Tree& tree, const WeightTerms& terms,
-                   std::span<const std::uint32_t> parents, Packet& packet, RingPacket& rings);
+                   std::span<const std::uint32_t> parents, Packet& packet, const RingPacket& rings);
 
 // Of the q-th query of the packet, whose rings are complete.
 void average_balls(const RingPacket& rings, std::size_t q, const RingMeans& means);

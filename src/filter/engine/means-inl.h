@@ -51,15 +51,18 @@ struct Quadruple {
 
 HWY_INLINE void means_of_balls(const RingPacket& rings, std::size_t q, const RingMeans& means) {
   const std::size_t count = rings.count;
-  const double* sums = rings.sums + q * (count + 1) * 4;
   double* balls = means.balls;
   double* inverse = means.inverse;
-  Quadruple ball = Quadruple::load(sums) + Quadruple::load(rings.whole);
+  const auto of_ring = [&](std::size_t k) HWY_ATTR {
+    return Quadruple::load(rings.sums + (k * kWidth + q) * 4) +
+           Quadruple::load(rings.whole + k * 4);
+  };
+  Quadruple ball = of_ring(0);
   for (std::size_t k = 0;;) {
     ball.store(balls + 4 * k);
     inverse[k] = balls[4 * k + 3];
     if (++k == count) break;
-    ball = ball + (Quadruple::load(sums + 4 * k) + Quadruple::load(rings.whole + 4 * k));
+    ball = ball + of_ring(k);
   }
   // Divisions are most of the time that is spent here: one for three, and several at once.
   for (std::size_t k = 0; k < count; k += kDoubles) {

@@ -73,13 +73,13 @@ class RingEngine::Range {
     set_radii(queries);
     std::fill(sums_.begin(), sums_.end(), 0.0);
     std::fill(whole_.begin(), whole_.end(), 0.0);
-    RingPacket rings{rings_,
-                     r_sq_.begin(),
-                     least_r_sq_.begin(),
-                     greatest_r_sq_.begin(),
-                     plane_reach_.begin(),
-                     sums_.begin(),
-                     whole_.begin()};
+    const RingPacket rings{rings_,
+                           r_sq_.begin(),
+                           least_r_sq_.begin(),
+                           greatest_r_sq_.begin(),
+                           plane_reach_.begin(),
+                           sums_.begin(),
+                           whole_.begin()};
     average_rings(e_.packets_.tree(), p_.weights.terms(), nodes, packet, rings);
     for (std::size_t q = 0; q < queries.size(); ++q) {
       finish(queries[q], q, rings, packet.met_itself[q] != 0);

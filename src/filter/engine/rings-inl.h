@@ -16,7 +16,7 @@ namespace psf::filter::engine::HWY_NAMESPACE {
 
 class RingWalk {
  public:
-  RingWalk(const Tree& tree, const WeightTerms& on, Packet& packet, RingPacket& rings)
+  RingWalk(const Tree& tree, const WeightTerms& on, Packet& packet, const RingPacket& rings)
       : tree_(tree),
         on_(on),
         packet_(packet),
@@ -201,12 +201,12 @@ class RingWalk {
       for (std::size_t k = 0; k < kAtOnce; ++k) ring[k] = hn::Max(ring[k], other[k]);
     }
     const VI beyond = hn::Set(kDI, static_cast<std::int32_t>(rings_.count));
-    const VI sums = hn::Mul(hn::Iota(kDI, static_cast<std::int32_t>(lane)),
-                            hn::Set(kDI, static_cast<std::int32_t>((rings_.count + 1) * 4)));
+    static_assert(4 * kWidth == 1 << 6);
+    const VI query = hn::ShiftLeft<2>(hn::Iota(kDI, static_cast<std::int32_t>(lane)));
     for (std::size_t k = 0; k < kAtOnce; ++k) {
       const auto pass = hn::RebindMask(kDI, pairs.pass[source[k]]);
-      const VI to = hn::ShiftLeft<2>(hn::IfThenElse(pass, ring[k], beyond));
-      hn::Store(hn::Add(to, sums), kDI, place_of[k]);
+      const VI to = hn::ShiftLeft<6>(hn::IfThenElse(pass, ring[k], beyond));
+      hn::Store(hn::Add(to, query), kDI, place_of[k]);
     }
   }
 
@@ -236,7 +236,7 @@ class RingWalk {
   const Tree& tree_;
   const WeightTerms& on_;
   Packet& packet_;
-  RingPacket& rings_;
+  const RingPacket& rings_;
   Terms terms_;
   Judge judge_;
   // Of the group at hand: red, green, blue and 1 of its sources, and where they go.
