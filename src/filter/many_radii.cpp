@@ -19,15 +19,6 @@ using core::seconds_since;
 // Radii that share a traversal at most: their sums for 16 queries fit a second-level cache.
 constexpr std::size_t kMostRings = 256;
 
-// Few, so that what one traversal writes is still in a cache when it is added to pictures.
-constexpr std::size_t kRangesAThread = 4;
-std::size_t queries_of_slab() {
-  return engine::RingEngine::kGrain * kRangesAThread * core::thread_count();
-}
-
-// One that is filled while the one before it is handed on.
-constexpr std::size_t kSlabs = 2;
-
 // Distinct scales, ascending, and where each radius is among them.
 struct Scales {
   std::vector<double> values;
@@ -55,8 +46,8 @@ bool can_share(const Parameters& parameters) {
 class Many {
  public:
   Many(const Records& records, const Block& block, const Parameters& parameters,
-       std::span<const Radius> radii, const std::function<void(const Slab&)>& on_slab)
-      : r_(records), block_(block), parameters_(parameters), radii_(radii), on_slab_(on_slab) {
+       std::span<const Radius> radii, Receiver& receiver)
+      : r_(records), block_(block), parameters_(parameters), radii_(radii), receiver_(receiver) {
     result_.statistics.resize(radii.size());
   }
 
@@ -103,63 +94,62 @@ class Many {
     return true;
   }
 
-  // A slab is handed on beside the averages of the next one.
   void traverse(const engine::RingEngine& engine, const Roles& roles, const Scales& scales,
                 std::vector<Statistics>& by_scale) {
-    const std::size_t columns = radii_.size(), slab = queries_of_slab();
+    constexpr std::size_t kGrain = engine::RingEngine::kGrain;
     const std::span<const std::uint32_t> queries = engine.queries();
-    std::vector<Rgb> c_bar[kSlabs];
-    for (std::vector<Rgb>& one : c_bar) one.resize(std::min(slab, queries.size()) * columns);
-    core::Aside hand_on;
-    for (std::size_t first = 0, k = 0; first < queries.size(); first += slab, ++k) {
-      core::throw_if_interrupted("no picture was written");
-      std::vector<Rgb>& to = c_bar[k % kSlabs];
-      const std::size_t last = std::min(first + slab, queries.size());
-      average_slab(engine, roles, scales, first, last, to, by_scale);
-      hand_on.wait();
-      hand_on.start([this, some = queries.subspan(first, last - first), columns, &to] {
-        on_slab_({some, 0, columns, std::span(to).first(some.size() * columns)});
+    for_slabs(queries, kGrain, [&](std::size_t first, std::size_t count) {
+      std::vector<std::vector<Statistics>> parts(core::range_count(count, kGrain));
+      core::parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
+        const std::size_t number = begin / kGrain, radii = radii_.size();
+        std::vector<Rgb> c_bar((end - begin) * radii);
+        std::span<Rgb> to = c_bar;
+        parts[number].resize(by_scale.size());
+        engine.average(first + begin, first + end, parts[number],
+                       [&](const engine::RingEngine::Results& results) {
+                         finish(engine, roles, scales, results, to.first(radii));
+                         to = to.subspan(radii);
+                       });
+        // All at once: in turn they would drive each other from the first-level cache (8%).
+        receiver_.take(number, 0, radii, c_bar);
       });
-    }
-    hand_on.wait();
+      for (const std::vector<Statistics>& part : parts) {
+        for (std::size_t k = 0; k < by_scale.size(); ++k) by_scale[k] += part[k];
+      }
+    });
   }
 
-  void average_slab(const engine::RingEngine& engine, const Roles& roles, const Scales& scales,
-                    std::size_t first, std::size_t last, std::span<Rgb> c_bar,
-                    std::vector<Statistics>& by_scale) {
-    constexpr std::size_t kGrain = engine::RingEngine::kGrain;
-    const std::size_t columns = radii_.size();
-    const bool is_finished = !parameters_.demodulate && parameters_.estimator == Estimator::average;
-    std::vector<std::vector<Statistics>> parts(core::range_count(last - first, kGrain));
-    core::parallel_for(last - first, kGrain, [&](std::size_t begin, std::size_t end) {
-      std::vector<Statistics>& part = parts[begin / kGrain];
-      part.resize(by_scale.size());
-      std::size_t to = begin * columns;
-      engine.average(first + begin, first + end, part,
-                     [&](const engine::RingEngine::Results& results) {
-                       const std::uint32_t i = results.query;
-                       if (is_finished) {
-                         for (const std::size_t from : scales.of)
-                           c_bar[to++] = results.average[from];
-                         return;
-                       }
-                       const bool source = roles.of[i] == Role::source;
-                       for (std::size_t k = 0; k < columns; ++k, ++to) {
-                         const std::size_t from = scales.of[k];
-                         c_bar[to] = finished(results.average[from], results.neighbors[from],
-                                              source, engine.radius(i, from), r_, i, parameters_);
-                       }
-                     });
-    });
-    for (const std::vector<Statistics>& part : parts) {
-      for (std::size_t k = 0; k < by_scale.size(); ++k) by_scale[k] += part[k];
+  void finish(const engine::RingEngine& engine, const Roles& roles, const Scales& scales,
+              const engine::RingEngine::Results& results, std::span<Rgb> c_bar) const {
+    if (!parameters_.demodulate && parameters_.estimator == Estimator::average) {
+      for (std::size_t k = 0; k < c_bar.size(); ++k) c_bar[k] = results.average[scales.of[k]];
+      return;
+    }
+    const std::uint32_t i = results.query;
+    const bool source = roles.of[i] == Role::source;
+    for (std::size_t k = 0; k < c_bar.size(); ++k) {
+      const std::size_t from = scales.of[k];
+      c_bar[k] = finished(results.average[from], results.neighbors[from], source,
+                          engine.radius(i, from), r_, i, parameters_);
+    }
+  }
+
+  // Calls visit(first, count) for queries [first, first + count), slab after slab.
+  template <class Visit>
+  void for_slabs(std::span<const std::uint32_t> queries, std::size_t grain, const Visit& visit) {
+    for (std::size_t first = 0; first < queries.size(); first += Receiver::kMostQueries) {
+      core::throw_if_interrupted("no picture was written");
+      const std::size_t count = std::min(Receiver::kMostQueries, queries.size() - first);
+      receiver_.begin(queries.subspan(first, count), grain);
+      visit(first, count);
+      receiver_.end();
     }
   }
 
   void one_by_one() {
     std::vector<float> radius;
-    std::vector<Rgb> c_bar;
     std::vector<std::uint32_t> queries;
+    std::vector<Rgb> c_bar;
     for (std::size_t k = 0; k < radii_.size(); ++k) {
       Parameters parameters = parameters_;
       parameters.radius = radii_[k];
@@ -173,7 +163,9 @@ class Many {
         queries.push_back(static_cast<std::uint32_t>(i));
         c_bar.push_back(average.c_bar[i]);
       }
-      on_slab_({queries, k, 1, c_bar});
+      for_slabs(queries, Receiver::kMostQueries, [&](std::size_t first, std::size_t count) {
+        receiver_.take(0, k, 1, std::span(c_bar).subspan(first, count));
+      });
       result_.statistics[k] = average.statistics;
       result_.roles = average.roles;
     }
@@ -183,21 +175,16 @@ class Many {
   const Block& block_;
   const Parameters& parameters_;
   std::span<const Radius> radii_;
-  const std::function<void(const Slab&)>& on_slab_;
+  Receiver& receiver_;
   ManyAverages result_;
 };
 
 }  // namespace
 
 ManyAverages average_many(const Records& records, const Block& block, const Parameters& parameters,
-                          std::span<const Radius> radii,
-                          const std::function<void(const Slab&)>& on_slab) {
+                          std::span<const Radius> radii, Receiver& receiver) {
   assert(!radii.empty());
-  return Many(records, block, parameters, radii, on_slab).run();
-}
-
-std::uint64_t memory_of_slab(std::size_t radii) {
-  return kSlabs * queries_of_slab() * radii * sizeof(Rgb);
+  return Many(records, block, parameters, radii, receiver).run();
 }
 
 }  // namespace psf::filter

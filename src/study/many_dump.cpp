@@ -12,6 +12,7 @@
 #include "filter/parameters_text.h"
 #include "filter/radius.h"
 #include "study/block_reader.h"
+#include "study/many_adder.h"
 
 namespace psf::study {
 namespace {
@@ -27,8 +28,8 @@ MemoryRequest request_of(const ManyRun& run, std::size_t last, std::size_t radii
           run.passes.first,
           last,
           run.max_memory,
-          kCopies * run.parts * ManyPictures::bytes_of_sums(radii),
-          filter::memory_of_slab(radii),
+          kCopies * run.parts * ManyPictures::bytes_of_sums(radii) + ManyAdder::kBytesAPixel,
+          ManyAdder::memory(radii),
           filter::kManyBytesPerRecord};
 }
 
@@ -105,12 +106,11 @@ class ManyRunner {
     const std::span<ManyPictures> pictures =
         std::span(outcome_.pictures).subspan(k % run_.parts * cameras, cameras);
     filter::ManyAverages averages;
+    adder_.start(records, pictures);
     core::undisturbed([&] {
-      averages = filter::average_many(records, block, run_.parameters, run_.radii,
-                                      [&](const filter::Slab& slab) {
-                                        outcome_.overflows += add_slab(records, slab, pictures);
-                                      });
+      averages = filter::average_many(records, block, run_.parameters, run_.radii, adder_);
     });
+    outcome_.overflows += adder_.overflows();
     for (std::size_t i = 0; i < records.size(); ++i) {
       const std::size_t camera = records.camera.empty() ? 0 : records.camera[i];
       pictures[camera].add_record(records, averages.roles[i], i);
@@ -158,6 +158,7 @@ class ManyRunner {
   std::size_t first_, last_;  // passes
   ChannelSet channels_;
   BlockReader reader_;
+  ManyAdder adder_;
   std::uint64_t next_block_ = 0;
   ManyOutcome outcome_;
 };

@@ -1,7 +1,6 @@
 #include "study/many_pictures.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "core/parallel.h"
 
@@ -9,10 +8,6 @@ namespace psf::study {
 namespace {
 
 constexpr std::size_t kTogether = ManyPictures::kTogether;
-
-std::size_t camera_of(const filter::Records& records, std::size_t i) {
-  return records.camera.empty() ? 0 : records.camera[i];
-}
 
 Rgb unfiltered_of(const filter::Records& records, std::size_t i) {
   return records.unfiltered.empty() ? Rgb(0, 0, 0) : records.unfiltered[i];
@@ -50,18 +45,31 @@ void ManyPictures::add_record(const filter::Records& records, filter::Role role,
   if (is_finite(value)) input_.add(pixel, value);
 }
 
-std::uint32_t ManyPictures::add_filtered(const filter::Records& records, std::size_t i,
-                                         std::size_t begin, std::size_t count, const Rgb* c_bar) {
+void ManyPictures::add_filtered(const filter::Records& records, std::size_t i, std::size_t first,
+                                std::span<const Rgb> c_bar,
+                                const std::function<void(std::size_t radius)>& overflows) {
+  double* sums = &filtered_[records.pixel[i] * groups_ * kTogether * 3];
+  for (std::size_t k = 0; k < c_bar.size();) {
+    const std::size_t begin = (first + k) % kTogether, group = (first + k) / kTogether;
+    const std::size_t count = std::min(kTogether - begin, c_bar.size() - k);
+    std::uint32_t bits = add_group(records.throughput[i], sums + group * kTogether * 3, begin,
+                                   c_bar.subspan(k, count));
+    for (std::size_t radius = first + k; bits != 0; ++radius, bits >>= 1) {
+      if ((bits & 1) != 0) overflows(radius);
+    }
+    k += count;
+  }
+}
+
+std::uint32_t ManyPictures::add_group(const Rgb& alpha, double* sum, std::size_t first,
+                                      std::span<const Rgb> c_bar) {
   constexpr std::size_t kValues = 3 * kTogether, kPattern = 12;
   static_assert(kValues % kPattern == 0);
-  const Rgb& alpha = records.throughput[i];
-  const std::size_t group = begin / kTogether, first = begin % kTogether;
-  double* sum = &filtered_[(records.pixel[i] * groups_ + group) * kValues];
   // What is not asked for is 0, so that all loops have one length, which compilers turn into
   // vectors.
   float value[kValues] = {}, factor[kPattern], check[4] = {};
-  for (std::size_t k = 0; k < count; ++k) {
-    for (std::size_t c = 0; c < 3; ++c) value[3 * (first + k) + c] = c_bar[k][static_cast<int>(c)];
+  for (std::size_t k = 0; k < c_bar.size(); ++k) {
+    for (int c = 0; c < 3; ++c) value[3 * (first + k) + static_cast<std::size_t>(c)] = c_bar[k][c];
   }
   for (std::size_t t = 0; t < kPattern; t += 3) {
     factor[t] = alpha.x;
@@ -76,7 +84,7 @@ std::uint32_t ManyPictures::add_filtered(const filter::Records& records, std::si
   }
   std::uint32_t overflows = 0;
   if (!(check[0] + check[1] + check[2] + check[3] == 0)) {
-    for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t k = 0; k < c_bar.size(); ++k) {
       float* one = value + 3 * (first + k);
       if (is_finite(Rgb(one[0], one[1], one[2]))) continue;
       overflows |= 1u << k;
@@ -118,36 +126,6 @@ std::vector<Rgb> ManyPictures::unfiltered() const {
     picture[pixel] = Rgb(values[3 * pixel], values[3 * pixel + 1], values[3 * pixel + 2]);
   }
   return picture;
-}
-
-std::uint64_t add_slab(const filter::Records& records, const filter::Slab& slab,
-                       std::span<ManyPictures> pictures) {
-  struct Overflow {
-    std::size_t record, radius;
-  };
-  std::vector<std::vector<Overflow>> overflows(core::range_count(slab.count, kTogether));
-  const std::size_t groups = core::range_count(slab.count, kTogether);
-  const std::size_t share = core::range_count(groups, core::thread_count()) * kTogether;
-  core::parallel_for(slab.count, share, [&](std::size_t first, std::size_t last) {
-    for (std::size_t q = 0; q < slab.queries.size(); ++q) {
-      const std::size_t i = slab.queries[q];
-      ManyPictures& picture = pictures[camera_of(records, i)];
-      const Rgb* c_bar = &slab.c_bar[q * slab.count];
-      for (std::size_t begin = first; begin < last; begin += kTogether) {
-        std::uint32_t bits = picture.add_filtered(records, i, slab.first + begin,
-                                                  std::min(kTogether, last - begin), c_bar + begin);
-        for (std::size_t k = begin; bits != 0; ++k, bits >>= 1) {
-          if ((bits & 1) != 0) overflows[begin / kTogether].push_back({i, slab.first + k});
-        }
-      }
-    }
-  });
-  std::uint64_t count = 0;
-  for (const std::vector<Overflow>& some : overflows) {
-    count += some.size();
-    for (const auto& [i, k] : some) pictures[camera_of(records, i)].leave_out(records, i, k);
-  }
-  return count;
 }
 
 }  // namespace psf::study

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <span>
 #include <utility>
@@ -10,7 +11,6 @@
 
 #include "film/film.h"
 #include "filter/average.h"
-#include "filter/many_radii.h"
 #include "filter/records.h"
 
 namespace psf::study {
@@ -27,7 +27,7 @@ class ManyPictures {
   // (height, width) of the same paths without filter.
   [[nodiscard]] std::vector<Rgb> unfiltered() const;
 
-  // Radii that lie together: what one thread adds to.
+  // Radii that are added together.
   static constexpr std::size_t kTogether = 8;
 
   // Bytes a pixel for so many radii.
@@ -38,14 +38,18 @@ class ManyPictures {
 
   // Adds record i of a block, but for c_bar, which add_filtered() does.
   void add_record(const filter::Records& records, filter::Role role, std::size_t i);
-  // alpha c_bar of radii [begin, begin + count), of one kTogether, for record i; c_bar[k] of radius
-  // begin + k. A bit for each that overflows: it is left out.
-  std::uint32_t add_filtered(const filter::Records& records, std::size_t i, std::size_t begin,
-                             std::size_t count, const Rgb* c_bar);
+  // alpha c_bar of radii [first, first + c_bar.size()) for record i. Visits each radius whose
+  // product overflows: it is left out.
+  void add_filtered(const filter::Records& records, std::size_t i, std::size_t first,
+                    std::span<const Rgb> c_bar,
+                    const std::function<void(std::size_t radius)>& overflows);
   // Takes back what add_record() added of record i, for radius k alone.
   void leave_out(const filter::Records& records, std::size_t i, std::size_t k);
 
  private:
+  // The same for one group of kTogether; a bit for each that overflows.
+  std::uint32_t add_group(const Rgb& alpha, double* sum, std::size_t first,
+                          std::span<const Rgb> c_bar);
   struct Missing {
     std::uint64_t paths = 0;
     double u[3] = {};
@@ -63,10 +67,5 @@ class ManyPictures {
   film::Film input_;
   std::map<std::pair<std::uint32_t, std::size_t>, Missing> missing_;  // by pixel and radius
 };
-
-// Adds a slab to the pictures of its cameras, threads sharing the radii: the same sums for any
-// number of threads. Returns how many paths overflowed, over all radii.
-[[nodiscard]] std::uint64_t add_slab(const filter::Records& records, const filter::Slab& slab,
-                                     std::span<ManyPictures> pictures);
 
 }  // namespace psf::study

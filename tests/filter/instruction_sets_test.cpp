@@ -1,6 +1,7 @@
 // Every instruction set and any number of threads give the same bytes.
 #include "filter/engine/instruction_sets.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -71,15 +72,26 @@ TEST_CASE("Every instruction set gives the same bytes for many radii") {
   for (int k = 0; k < 20; ++k) {
     radii.push_back({0.02 * std::pow(1.2, k), filter::RadiusBasis::distance, 0.3});
   }
+  struct Keep : filter::Receiver {
+    void begin(std::span<const std::uint32_t> queries, std::size_t grain) override {
+      parts.assign((queries.size() + grain - 1) / grain, {});
+    }
+    void take(std::size_t part, std::size_t, std::size_t, std::span<const Rgb> c_bar) override {
+      parts[part].assign(c_bar.begin(), c_bar.end());
+    }
+    void end() override {
+      for (const auto& part : parts) values.insert(values.end(), part.begin(), part.end());
+    }
+    std::vector<std::vector<Rgb>> parts;
+    std::vector<Rgb> values;
+  };
   const auto all = [&](const EngineCase& c) {
     filter::Parameters parameters = c.parameters;
     parameters.count_refusals = false;
-    std::vector<Rgb> values;
-    static_cast<void>(filter::average_many(
-        c.set.view(), {0, 2, 1.5, c.cameras}, parameters, radii, [&](const filter::Slab& slab) {
-          values.insert(values.end(), slab.c_bar.begin(), slab.c_bar.end());
-        }));
-    return values;
+    Keep keep;
+    static_cast<void>(
+        filter::average_many(c.set.view(), {0, 2, 1.5, c.cameras}, parameters, radii, keep));
+    return keep.values;
   };
   for (const unsigned terms : {0u, 7u, 16u, 127u}) {
     const EngineCase c = noisy_case(3000, terms, 0.2f);

@@ -1,6 +1,7 @@
 // Many radii in one traversal give what separate runs with plain FLANN give, to the last neighbour.
 #include "filter/many_radii.h"
 
+#include <atomic>
 #include <cmath>
 
 #include "catch.h"
@@ -27,15 +28,31 @@ Result many(const EngineCase& c, const filter::Block& block, const std::vector<R
   parameters.count_refusals = false;
   Result r;
   r.c_bar.assign(radii.size(), std::vector<Rgb>(c.set.size(), Rgb(0, 0, 0)));
-  const auto take = [&](const filter::Slab& slab) {
-    for (std::size_t q = 0; q < slab.queries.size(); ++q) {
-      for (std::size_t k = 0; k < slab.count; ++k) {
-        r.c_bar[slab.first + k][slab.queries[q]] = slab.c_bar[q * slab.count + k];
-        ++r.seen;
-      }
+  class Keep : public filter::Receiver {
+   public:
+    explicit Keep(Result& to) : to_(to) {}
+    void begin(std::span<const std::uint32_t> queries, std::size_t grain) override {
+      queries_ = queries;
+      grain_ = grain;
     }
+    void take(std::size_t part, std::size_t first, std::size_t count,
+              std::span<const Rgb> c_bar) override {
+      for (std::size_t q = 0; q * count < c_bar.size(); ++q) {
+        const std::uint32_t i = queries_[part * grain_ + q];
+        for (std::size_t k = 0; k < count; ++k) to_.c_bar[first + k][i] = c_bar[q * count + k];
+      }
+      seen_ += c_bar.size();
+    }
+    void end() override { to_.seen = seen_; }
+
+   private:
+    Result& to_;
+    std::span<const std::uint32_t> queries_;
+    std::size_t grain_ = 0;
+    std::atomic<std::size_t> seen_ = 0;
   };
-  r.many = filter::average_many(c.set.view(), block, parameters, radii, take);
+  Keep keep(r);
+  r.many = filter::average_many(c.set.view(), block, parameters, radii, keep);
   return r;
 }
 
