@@ -7,8 +7,6 @@
 namespace psf::study {
 namespace {
 
-constexpr std::size_t kTogether = ManyPictures::kTogether;
-
 Rgb unfiltered_of(const filter::Records& records, std::size_t i) {
   return records.unfiltered.empty() ? Rgb(0, 0, 0) : records.unfiltered[i];
 }
