@@ -53,7 +53,8 @@ TEST_CASE("The choice of psf tune is near the best of the grid") {
 
 TEST_CASE("The choice of psf tune is near the best of the grid on every sample scene",
           "[.][long]") {
-  for (const std::string scene : {"textured", "two-rooms", "materials", "fence", "corner"}) {
+  for (const std::string scene :
+       {"textured", "two-rooms", "materials", "fence", "corner", "sphere-light", "furnace"}) {
     const TempFolder folder;
     const Outcome outcome =
         run("psf-render " + kSamples + scene +
