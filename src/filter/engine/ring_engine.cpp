@@ -169,7 +169,7 @@ class RingEngine::Range {
   std::span<Statistics> statistics_;
   const std::function<void(const Results&)>& visit_;
   core::Buffer<float> r_sq_, least_r_sq_, greatest_r_sq_, plane_reach_;  // as RingPacket has them
-  core::Buffer<double> sums_;                                            // (16, rings + 1, 4)
+  core::Buffer<double> sums_;                                            // (rings + 1, 16, 4)
   core::Buffer<double> whole_;                                           // (rings, 4)
   // Of a query, as RingMeans has them.
   core::Buffer<double> balls_, inverse_;
