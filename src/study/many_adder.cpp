@@ -33,6 +33,10 @@ void ManyAdder::take(std::size_t part, std::size_t first, std::size_t count,
     if (owner_of(i) == before_ + part) {
       add(own.overflows, i, first, of_i);
     } else {
+      if (own.late.empty()) {  // room for all at once: memory() is the most there is
+        own.late.reserve(grain_);
+        own.c_bar.reserve(grain_ * count);
+      }
       own.late.push_back({i, first, count});
       own.c_bar.insert(own.c_bar.end(), of_i.begin(), of_i.end());
     }
