@@ -20,6 +20,7 @@ using Json = nlohmann::json;
 // Metadata that paths of the same picture may differ in.
 constexpr std::array<std::string_view, 6> kFree = {"producer", "seed",  "sampler",
                                                    "split",    "scene", "joined"};
+constexpr const char* kMaterials = "materials";
 
 template <class List>
 bool has(const List& list, std::string_view name) {
@@ -63,6 +64,7 @@ void check_same(const Reader& reader, const Reader& first) {
     if (has(kFree, key)) return;
     const Json a = now.value(key, Json()), b = before.value(key, Json());
     if (a == b) return;
+    if (key == kMaterials && (a.is_null() || b.is_null())) return;  // names that one does not tell
     const bool brief = a.dump().size() + b.dump().size() < 120;
     refuse(reader, first,
            fmt::format("its {} is another{}", key,
@@ -83,6 +85,7 @@ std::string joined_metadata(std::span<const JoinedInput> inputs) {
       if (own.contains(key)) entry[key] = own.at(key);
     }
     joined.push_back(std::move(entry));
+    if (own.contains(kMaterials)) metadata[kMaterials] = own.at(kMaterials);
   }
   metadata["joined"] = std::move(joined);
   return metadata.dump();

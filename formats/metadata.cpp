@@ -122,20 +122,21 @@ void check_depth(const std::string& json) {
 std::string to_json(const Metadata& metadata) {
   OrderedJson cameras = OrderedJson::array();
   for (const CameraInfo& camera : metadata.cameras) cameras.push_back(camera_json(camera));
-  const OrderedJson json = {{"producer", metadata.producer},
-                            {"scene", metadata.scene},
-                            {"scene_hash", metadata.scene_hash},
-                            {"integrator", metadata.integrator},
-                            {"sampler", metadata.sampler},
-                            {"enumeration", metadata.enumeration},
-                            {"seed", metadata.seed},
-                            {"block_base", metadata.block_base},
-                            {"split", metadata.split},
-                            {"vertex_roughness", metadata.vertex_roughness},
-                            {"vertex_rule", metadata.vertex_rule},
-                            {"units", metadata.units},
-                            {"cameras", std::move(cameras)},
-                            {"lights", metadata.lights}};
+  OrderedJson json = {{"producer", metadata.producer},
+                      {"scene", metadata.scene},
+                      {"scene_hash", metadata.scene_hash},
+                      {"integrator", metadata.integrator},
+                      {"sampler", metadata.sampler},
+                      {"enumeration", metadata.enumeration},
+                      {"seed", metadata.seed},
+                      {"block_base", metadata.block_base},
+                      {"split", metadata.split},
+                      {"vertex_roughness", metadata.vertex_roughness},
+                      {"vertex_rule", metadata.vertex_rule},
+                      {"units", metadata.units},
+                      {"cameras", std::move(cameras)},
+                      {"lights", metadata.lights}};
+  if (!metadata.materials.empty()) json["materials"] = metadata.materials;
   // A name that is not UTF-8 (a file name may be any bytes) is stored with U+FFFD in it.
   return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
@@ -162,6 +163,7 @@ Metadata parse_metadata(const std::string& json) {
   read_key(place, "units", out.units);
   read_key(place, "cameras", out.cameras);
   read_key(place, "lights", out.lights);
+  read_key(place, "materials", out.materials);
   return out;
 }
 

@@ -34,6 +34,8 @@ struct Metadata {
   std::string units;                // of lengths, "scene" where unknown
   std::vector<CameraInfo> cameras;  // index = value of the channel `camera`
   std::vector<std::string> lights;  // light l owns bit l mod 32 of the channel `visibility`
+  // Names; index = value of the channel `material`.
+  std::vector<std::string> materials;
 };
 
 [[nodiscard]] std::string to_json(const Metadata& metadata);

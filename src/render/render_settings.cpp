@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "formats/error.h"
+#include "formats/layout.h"
 #include "formats/metadata.h"
 #include "render/camera.h"
 #include "render/recorder.h"
@@ -64,10 +65,16 @@ formats::Head make_head(const Scene& scene, const Integrator& integrator,
     metadata.cameras.push_back(CameraRays(scene.cameras[k]).info());
   }
   metadata.lights = integrator.light_names();
+  for (const Material& material : scene.materials) metadata.materials.push_back(material.name);
 
   formats::Head head;
   head.channels = record_channels(settings.channels);
   head.metadata = formats::to_json(metadata);
+  // Names are a help and no reason to refuse a scene of very many materials.
+  while (head.metadata.size() > formats::kMaxMetadata && !metadata.materials.empty()) {
+    metadata.materials.resize(metadata.materials.size() / 2);
+    head.metadata = formats::to_json(metadata);
+  }
   return head;
 }
 

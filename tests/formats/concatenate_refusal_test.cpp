@@ -9,6 +9,7 @@
 #include "formats/check.h"
 #include "formats/concatenate.h"
 #include "formats/error.h"
+#include "formats/metadata.h"
 #include "formats/reader.h"
 #include "numbered.h"
 
@@ -112,6 +113,28 @@ TEST_CASE("paths may be of another seed or sampler; the same ones twice are note
   const auto same_seed = concatenate(std::vector{two.a, two.b}, two.out);
   REQUIRE(same_seed.notes.size() == 1);
   CHECK(has(same_seed.notes[0], "seed 0 comes twice"));
+}
+
+TEST_CASE("files of other material names are refused, names that only one tells are kept") {
+  const Two two;
+  const auto rewrite = [&](const char* names) {
+    two.rewrite([&](Head& head) {
+      auto metadata = nlohmann::ordered_json::parse(head.metadata);
+      metadata["materials"] = nlohmann::ordered_json::parse(names);
+      head.metadata = metadata.dump();
+    });
+  };
+  rewrite(R"(["wall", "floor"])");
+  for (const auto& inputs : {std::vector{two.a, two.b}, std::vector{two.b, two.a}}) {
+    static_cast<void>(concatenate(inputs, two.out));
+    CHECK(parse_metadata(Reader(two.out).head().metadata).materials ==
+          std::vector<std::string>{"wall", "floor"});
+  }
+  std::filesystem::remove(two.out);
+  std::filesystem::rename(two.b, two.a);
+  rewrite(R"(["floor", "wall"])");
+  CHECK(has(two.refusal(ErrorCode::bad_input),
+            R"(its materials is another: ["floor","wall"], not ["wall","floor"])"));
 }
 
 TEST_CASE("channels and passes that there are not are refused by name") {

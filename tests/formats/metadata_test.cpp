@@ -46,6 +46,7 @@ TEST_CASE("metadata survives JSON exactly") {
     in.cameras[1].projection[k] = -1e-300 * static_cast<double>(k);
   }
   in.lights = {"sun", "", "lamp"};
+  in.materials = {"", "caf\xC3\xA9", "wall"};
   const Metadata out = parse_metadata(to_json(in));
   CHECK(out.producer == in.producer);
   CHECK(out.scene == in.scene);
@@ -61,6 +62,9 @@ TEST_CASE("metadata survives JSON exactly") {
   CHECK(out.units == in.units);
   CHECK(out.cameras == in.cameras);
   CHECK(out.lights == in.lights);
+  CHECK(out.materials == in.materials);
+  // Without names there is no key: files of earlier versions stay the same byte for byte.
+  CHECK(to_json(Metadata{}).find("materials") == std::string::npos);
 }
 
 TEST_CASE("unknown metadata keys are ignored and missing ones keep their defaults") {
@@ -92,7 +96,8 @@ TEST_CASE("malformed metadata is an error that names the key") {
       {R"({"cameras":[{"camera_to_world":[1,2]}]})", "/cameras/0/camera_to_world"},
       {R"({"cameras":[{"projection":[0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,"x"]}]})",
        "/cameras/0/projection/15"},
-      {R"({"lights":["a",2]})", "/lights/1"}};
+      {R"({"lights":["a",2]})", "/lights/1"},
+      {R"({"materials":{"1":"wall"}})", "/materials"}};
   for (const auto& [json, key] : cases) {
     CAPTURE(json);
     CHECK(complaint(json).find(key + ":") != std::string::npos);

@@ -124,6 +124,28 @@ TEST_CASE("the file says how it was made") {
   CHECK(metadata.cameras == std::vector{CameraRays(scene.cameras[0]).info()});
 }
 
+TEST_CASE("the file names the materials by their number, as many as the metadata hold") {
+  Scene scene = tests::two_camera_scene();
+  scene.materials.resize(3);
+  scene.materials[0].name = "wall";
+  scene.materials[2].name = "caf\xE9";  // Latin-1
+  const auto names = [&] {
+    const auto head = make_head(scene, FakeIntegrator(), quiet_settings(1));
+    formats::validate(head);  // refuses metadata that are too long
+    return formats::parse_metadata(head.metadata).materials;
+  };
+  CHECK(names() == std::vector<std::string>{"wall", "", "caf\xEF\xBF\xBD"});
+  scene.materials.resize(20000);
+  for (std::size_t k = 3; k < scene.materials.size(); ++k) {
+    scene.materials[k].name = std::to_string(k) + std::string(100, 'x');
+  }
+  const auto some = names();
+  REQUIRE(some.size() >= 5000);
+  REQUIRE(some.size() < 20000);
+  CHECK(some[0] == "wall");
+  CHECK(some[4999] == scene.materials[4999].name);
+}
+
 TEST_CASE("a pass larger than a slab is written whole") {
   Scene scene = tests::two_camera_scene();
   scene.cameras[0].width = 700;

@@ -138,6 +138,36 @@ TEST_CASE("a file that was rendered otherwise is refused, named, and left as it 
   CHECK(read_all(path) == before);
 }
 
+TEST_CASE("a file of other material names is refused, one without any goes on") {
+  const TempFolder folder;
+  const std::string path = folder / "a.pvb";
+  const RenderSettings settings = quiet_settings(2);
+  (void)render_to(path, settings);
+  const auto go_on = [&](const std::string& name) {
+    Scene scene = two_camera_scene();
+    scene.materials.resize(1);
+    scene.materials[0].name = name;
+    const FakeIntegrator integrator;
+    const bool is_new = !std::filesystem::exists(path);
+    const formats::Head head = make_head(scene, integrator, settings);
+    formats::Writer writer =
+        is_new ? formats::Writer(path, head, fast()) : formats::Writer::resume(path, head, fast());
+    return render::render(scene, integrator, with(settings, is_new ? 2 : 4), &writer);
+  };
+  CHECK(go_on("wall").passes == 4);
+  std::filesystem::remove(path);
+  CHECK(go_on("wall").passes == 2);
+  std::string refusal;
+  try {
+    (void)go_on("floor");
+  } catch (const Error& error) {
+    refusal = error.what();
+  }
+  CHECK(refusal.find(R"(rendered with materials ["wall"], now it is ["floor"])") !=
+        std::string::npos);
+  CHECK(go_on("wall").passes == 4);
+}
+
 TEST_CASE("a file without the renderer's state is refused") {
   const TempFolder folder;
   const std::string path = folder / "a.pvb";
