@@ -67,6 +67,7 @@ class Runner {
     for (const filter::CameraView& camera : dump_.cameras()) {
       outcome_.pictures.emplace_back(camera, channels_.reflectance.has_value(),
                                      channels_.normal.has_value());
+      if (run_.with_noise) outcome_.noise.emplace_back(camera);
     }
   }
 
@@ -74,10 +75,11 @@ class Runner {
     blocks_.emplace(run_.parameters.block, dump_.pass_bounds(), first_, last);
     outcome_.passes = last - first_;
     outcome_.blocks = blocks_->count();
-    outcome_.memory =
-        plan_memory(dump_, channels_,
-                    {run_.parameters, first_, last, run_.max_memory,
-                     copies_ * CameraPictures::kBytesOfSums + CameraPictures::kBytesToWrite});
+    const std::uint64_t sums =
+        CameraPictures::kBytesOfSums + (run_.with_noise ? NoiseMoments::kBytesAPixel : 0);
+    outcome_.memory = plan_memory(dump_, channels_,
+                                  {run_.parameters, first_, last, run_.max_memory,
+                                   copies_ * sums + CameraPictures::kBytesToWrite});
     if (outcome_.pictures.empty()) make_pictures();
   }
 
@@ -110,6 +112,7 @@ class Runner {
       const auto end = static_cast<std::size_t>(path - range.first);
       core::undisturbed([&] {
         outcome_.overflows += add_records(records, average, radius_, i, end, outcome_.pictures);
+        if (run_.with_noise) add_noise(records, average.roles, i, end, outcome_.noise);
       });
       i = end;
       outcome_.seconds_film += seconds_since(start);

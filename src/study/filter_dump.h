@@ -11,6 +11,7 @@
 #include "filter/statistics.h"
 #include "study/dump.h"
 #include "study/memory.h"
+#include "study/noise_share.h"
 #include "study/passes.h"
 #include "study/pictures.h"
 
@@ -28,10 +29,12 @@ struct FilterRun {
   // Bytes, kept by the estimate of memory.h: first the next block is no longer read ahead, which is
   // slower and gives the same bytes. Not set: no limit.
   std::optional<std::uint64_t> max_memory;
+  bool with_noise = false;  // of the picture without filter; see FilterOutcome::noise
 };
 
 struct FilterOutcome {
   std::vector<CameraPictures> pictures;  // one a camera
+  std::vector<NoiseMoments> noise;       // one a camera where the run asked for them, else none
   filter::Statistics statistics;
   std::uint64_t passes = 0, blocks = 0;
   std::uint64_t overflows =

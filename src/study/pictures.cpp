@@ -1,20 +1,11 @@
 #include "study/pictures.h"
 
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <numeric>
 
-#include "core/parallel.h"
+#include "study/pixel_bands.h"
 
 namespace psf::study {
 namespace {
-
-// Pixels are dealt out to bands in runs, so that two threads seldom write to one cache line, and so
-// that records of a part of the picture keep all of them busy.
-constexpr std::uint32_t kRun = 64;
-constexpr std::size_t kMostBands = 32;
-constexpr std::size_t kBatch = 1024;  // records
 
 // One of the three values of every pixel.
 std::vector<float> component(const std::vector<float>& triples, std::size_t k) {
@@ -92,22 +83,10 @@ film::Image CameraPictures::image() const {
 std::uint64_t add_records(const filter::Records& records, const filter::Average& average,
                           std::span<const float> radius, std::size_t first, std::size_t last,
                           std::span<CameraPictures> pictures) {
-  const std::size_t bands = std::bit_ceil(std::min(core::thread_count(), kMostBands));
-  std::vector<std::uint64_t> overflows(bands, 0);
-  core::parallel_for(bands, 1, [&](std::size_t band, std::size_t) {
-    std::array<std::size_t, kBatch> mine;
-    for (std::size_t begin = first; begin < last; begin += kBatch) {
-      // Without a branch: of a picture in random order it would be guessed wrong half of the time.
-      std::size_t count = 0;
-      for (std::size_t i = begin, end = std::min(last, begin + kBatch); i < end; ++i) {
-        mine[count] = i;
-        count += ((records.pixel[i] / kRun) & (bands - 1)) == band ? 1u : 0u;
-      }
-      for (std::size_t k = 0; k < count; ++k) {
-        const std::size_t camera = records.camera.empty() ? 0 : records.camera[mine[k]];
-        if (!pictures[camera].add(records, average, radius, mine[k])) ++overflows[band];
-      }
-    }
+  std::vector<std::uint64_t> overflows(pixel_bands(), 0);
+  for_each_by_pixel(records, first, last, [&](std::size_t band, std::size_t i) {
+    const std::size_t camera = records.camera.empty() ? 0 : records.camera[i];
+    if (!pictures[camera].add(records, average, radius, i)) ++overflows[band];
   });
   return std::accumulate(overflows.begin(), overflows.end(), std::uint64_t{0});
 }

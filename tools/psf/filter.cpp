@@ -163,6 +163,7 @@ void run(const FilterOptions& options) {
   run.parameters = parameters_of(chosen);
   run.passes = parse_passes(options.passes);
   run.max_memory = options.max_memory;
+  run.with_noise = !options.common.json.empty();
   if (options.follow) wait_for_first_pass(options.input);
   study::Dump dump(options.input);
   const std::uint64_t last = run.passes.last.value_or(dump.pass_bounds().size() - 1);
@@ -175,7 +176,7 @@ void run(const FilterOptions& options) {
   report.input = options.input;
   report.uuid = dump.reader().uuid();
   report.parameters = run.parameters;
-  report.cameras = dump.cameras().size();
+  report.cameras = dump.metadata().cameras;
   const bool quiet = options.common.quiet;
   report.written = options.follow ? filter_growing(dump, run, writer, quiet, report.outcome)
                                   : filter_all(dump, run, writer, quiet, report.outcome);

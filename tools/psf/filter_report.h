@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "filter/parameters_text.h"
+#include "noise_report.h"
 #include "study/filter_dump.h"
 #include "text.h"
 
@@ -17,7 +18,7 @@ struct FilterReport {
   std::string input, uuid;
   filter::Parameters parameters;
   study::FilterOutcome outcome;
-  std::size_t cameras = 1;
+  std::vector<formats::CameraInfo> cameras;
   std::vector<std::string> written;  // files
   double seconds_write = 0, seconds = 0;
   study::PeakMemory peak;
@@ -54,7 +55,7 @@ inline void print_report(const FilterReport& report) {
   line("records", fmt::format("{} in {} and {}, {}", with_commas(s.records),
                               counted(report.outcome.passes, "pass", "passes"),
                               counted(report.outcome.blocks, "block", "blocks"),
-                              counted(report.cameras, "camera", "cameras")));
+                              counted(report.cameras.size(), "camera", "cameras")));
   line("averaged",
        fmt::format("{} from {}; {} without vertex", with_commas(s.queries),
                    counted(s.sources, "source", "sources"), with_commas(s.without_vertex)));
@@ -122,7 +123,7 @@ inline nlohmann::ordered_json to_json(const FilterReport& report) {
                {"records", s.records},
                {"passes", report.outcome.passes},
                {"blocks", report.outcome.blocks},
-               {"cameras", report.cameras},
+               {"cameras", report.cameras.size()},
                {"without_vertex", s.without_vertex},
                {"queries", s.queries},
                {"sources", s.sources},
@@ -158,6 +159,9 @@ inline nlohmann::ordered_json to_json(const FilterReport& report) {
   const bool counted = report.parameters.count_refusals;
   json["candidates"] = counted ? Json(s.candidates) : Json(nullptr);
   json["refused"] = counted ? refused : Json(nullptr);
+  std::vector<study::NoiseShare> noise;
+  for (const study::NoiseMoments& of : report.outcome.noise) noise.push_back(of.share());
+  json["noise"] = noise_json(noise, report.cameras);
   return json;
 }
 

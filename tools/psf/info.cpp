@@ -18,6 +18,7 @@
 #include "formats/metadata.h"
 #include "formats/reader.h"
 #include "formats/statistics.h"
+#include "noise_report.h"
 #include "verbs.h"
 
 namespace psf::tools {
@@ -190,6 +191,31 @@ void print_statistics(const formats::Reader& reader, const Statistics& statistic
   }
 }
 
+// Of each camera, where the file is a dump that can be filtered.
+struct Noise {
+  std::vector<study::NoiseShare> of;
+  std::string unknown;  // why there is none
+};
+
+Noise read_noise(const std::string& path) {
+  try {
+    const study::Dump dump(path);
+    return {study::noise_shares(dump, {}), ""};
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::bad_input) throw;
+    return {{}, error.what()};
+  }
+}
+
+void print_noise(const formats::Metadata& metadata, const Noise& noise) {
+  fmt::print("\n");
+  if (noise.of.empty()) return line("noise", "not known: " + shown(noise.unknown));
+  fmt::print("  {:<14}{}\n", "camera", "u's share of the noise, which no filter of c reaches");
+  for (std::size_t k = 0; k < noise.of.size(); ++k) {
+    fmt::print("  {:<14}{}\n", shown(metadata.cameras[k].name), share_text(noise.of[k]));
+  }
+}
+
 nlohmann::ordered_json to_json(const formats::Reader& reader,
                                const std::vector<formats::ChannelSize>& sizes,
                                const Statistics& statistics) {
@@ -254,9 +280,16 @@ void run(const InfoOptions& options) {
   print_cameras(metadata);
   print_lights(metadata);
   print_channels(reader, sizes);
-  if (options.statistics) print_statistics(reader, statistics);
+  Noise noise;
+  if (options.statistics) {
+    print_statistics(reader, statistics);
+    noise = read_noise(options.input);
+    print_noise(metadata, noise);
+  }
   if (!options.common.json.empty()) {
-    core::write_text_file(options.common.json, to_json(reader, sizes, statistics).dump(2) + "\n");
+    nlohmann::ordered_json json = to_json(reader, sizes, statistics);
+    if (!noise.of.empty()) json["noise"] = noise_json(noise.of, metadata.cameras);
+    core::write_text_file(options.common.json, json.dump(2) + "\n");
   }
 }
 
@@ -270,8 +303,8 @@ void add_info(CLI::App& app) {
       ->required()
       ->type_name("FILE");
   command->add_flag("--stats", options->statistics,
-                    "also smallest, largest and mean value of each channel, and how many are not "
-                    "finite; reads the whole file");
+                    "also smallest, largest and mean value of each channel, how many are not "
+                    "finite, and u's share of the noise; reads the whole file");
   add_common(*command, options->common);
   set_example(*command, "psf info scene.pvb --stats");
   command->callback([options] { run(*options); });

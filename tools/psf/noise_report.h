@@ -1,0 +1,39 @@
+// What share of the noise of the picture without filter is u's, as text and as JSON.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+#include "formats/metadata.h"
+#include "study/noise_share.h"
+
+namespace psf::tools {
+
+// "12.3%", "no noise", or why it is not known.
+inline std::string share_text(const study::NoiseShare& noise) {
+  if (noise.pixels == 0) return "not known: no pixel has two paths";
+  const double share = noise.share();
+  return std::isnan(share) ? "no noise" : fmt::format("{:.1f}%", 100 * share);
+}
+
+// An entry a camera; the share is null where there is no noise.
+inline nlohmann::ordered_json noise_json(std::span<const study::NoiseShare> noise,
+                                         std::span<const formats::CameraInfo> cameras) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < noise.size(); ++k) {
+    list.push_back({{"camera", cameras[k].name},
+                    {"unfiltered_share", noise[k].share()},
+                    {"variance", noise[k].variance()},
+                    {"unfiltered", noise[k].unfiltered},
+                    {"contribution", noise[k].contribution},
+                    {"covariance", noise[k].covariance},
+                    {"pixels", noise[k].pixels}});
+  }
+  return list;
+}
+
+}  // namespace psf::tools
