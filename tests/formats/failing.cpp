@@ -55,7 +55,9 @@ ssize_t __wrap_pwritev(int file, const iovec* parts, int count, off_t offset) {
 
 ssize_t __wrap_pread(int file, void* out, size_t size, off_t offset) {
   ++calls().reads;
-  return __real_pread(file, out, size, offset);
+  const ssize_t got = __real_pread(file, out, size, offset);
+  if (got > 0) calls().bytes_read += static_cast<std::uint64_t>(got);
+  return got;
 }
 
 int __wrap_fdatasync(int file) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 
 namespace psf::test {
 
@@ -14,6 +15,7 @@ struct Calls {
   int changes = 0;          // calls of these so far
   const char* failed = "";  // the last one that did
   std::atomic<long> reads = 0;
+  std::atomic<std::uint64_t> bytes_read = 0;
   bool skip_sync = false;
 };
 [[nodiscard]] Calls& calls();

@@ -76,7 +76,8 @@ class Watcher {
     thread_.join();
   }
 
-  std::uint64_t looks = 0, grown = 0, wrong = 0, shrunk = 0, passes = 0;
+  std::atomic<std::uint64_t> looks = 0;
+  std::uint64_t grown = 0, wrong = 0, shrunk = 0, passes = 0;
   std::vector<std::string> errors;
 
  private:
@@ -125,17 +126,6 @@ class Watcher {
   std::thread thread_;
 };
 
-// Starts a writer, waits for its first pass, kills it.
-long microseconds_to_first_pass(const std::string& path, const std::string& codec) {
-  const auto start = std::chrono::steady_clock::now();
-  const WriterProcess writer({path, codec, "1000000", "300", "nosync"});
-  while (!std::filesystem::exists(path)) std::this_thread::yield();
-  const auto passed = std::chrono::steady_clock::now() - start;
-  writer.kill();
-  static_cast<void>(writer.wait());
-  return static_cast<long>(std::chrono::duration_cast<std::chrono::microseconds>(passed).count());
-}
-
 void kill_writers(int kills, Codec codec) {
   const test::Scratch scratch;
   const std::string path = scratch.path("k.pvb");
@@ -145,17 +135,19 @@ void kill_writers(int kills, Codec codec) {
   const auto passes_now = [&]() -> std::uint64_t {
     return std::filesystem::exists(path) ? Reader(path).passes().size() : 0;
   };
-  // A life is long enough to commit something, however slow the machine is.
-  const long longest = 20'000 + 2 * microseconds_to_first_pass(path, codec_name);
+  constexpr long kLongest = 20'000;  // microseconds
   int killed = 0;
-  std::uint64_t before = passes_now(), lost = 0;
+  std::uint64_t before = 0, lost = 0;
   for (int k = 0; k < kills; ++k) {
     // At most 60 passes a life, so that the file stays small; now and then as fast as it can.
     const std::string last = std::to_string(before + 60);
     const WriterProcess writer(
         {path, codec_name, last, k % 3 == 0 ? "0" : "300", k % 4 == 0 ? "sync" : "nosync"});
+    // Every other life lasts until it has committed a pass, however slow the machine is; the others
+    // end anywhere, before the file is open too.
+    while (k % 2 == 0 && passes_now() == before) std::this_thread::yield();
     std::this_thread::sleep_for(
-        std::chrono::microseconds(static_cast<long>(random() >> 1) % longest));
+        std::chrono::microseconds(static_cast<long>(random() >> 1) % kLongest));
     writer.kill();
     killed += writer.wait() == -SIGKILL;
     const std::uint64_t now = passes_now();
@@ -165,16 +157,16 @@ void kill_writers(int kills, Codec codec) {
   const std::uint64_t total = before + 1;
   const WriterProcess last({path, codec_name, std::to_string(total), "0", "nosync", "close"});
   CHECK(last.wait() == 0);
+  while (watcher.looks <= 10) std::this_thread::yield();
   watcher.stop();
-  CAPTURE(kills, before, watcher.looks, watcher.grown, watcher.errors);
+  CAPTURE(kills, before, watcher.looks.load(), watcher.grown, watcher.errors);
   CHECK(killed == kills);
   CHECK(lost == 0);
   CHECK(watcher.errors.empty());
   CHECK(watcher.wrong == 0);
   CHECK(watcher.shrunk == 0);
-  CHECK(watcher.looks > 10);
   CHECK(watcher.grown > 0);
-  CHECK(before > static_cast<std::uint64_t>(kills));  // it got on, a pass a life on average
+  CHECK(before >= static_cast<std::uint64_t>(kills) / 2);  // it got on
 
   const Reader reader(path);
   CHECK(reader.closed());

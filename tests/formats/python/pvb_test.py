@@ -5,7 +5,6 @@ import re
 import subprocess
 import sys
 import threading
-import time
 import uuid
 
 from support import (CHANNELS, CODECS, FOLDER, HAS_ZSTD, ROOT, SAMPLES, Test, bits, frames, load, main, np, pvb,
@@ -238,13 +237,10 @@ class Writing(Test):
             original = pvb._File.frame
             pvb._File.frame = lambda self, *a: (reads.append(a), original(self, *a))[1]
             try:
-                start = time.monotonic()
                 f = pvb.open(path)
-                seconds = time.monotonic() - start
             finally:
                 pvb._File.frame = original
             self.assertLess(len(reads), 128)
-            self.assertLess(seconds, 1)
             self.assertEqual(bits(f["x"]), bits(np.arange(n, dtype="<u4")))
             f.close()
         # By the chain that resume() builds on, too.

@@ -76,10 +76,10 @@ class PageTest(unittest.TestCase):
 
     def expect_text(self, selector, text):
         """Soon: pictures are decoded first."""
-        self.page.wait(f'document.querySelector({selector!r}).textContent === {text!r}', 5)
+        self.page.wait(f'document.querySelector({selector!r}).textContent === {text!r}')
 
-    def wait_for(self, condition, seconds=20):
-        end = time.monotonic() + seconds
+    def wait_for(self, condition):
+        end = time.monotonic() + chromium.PATIENCE
         while not condition():
             self.assertLess(time.monotonic(), end, 'never came true')
             time.sleep(0.02)

@@ -9,7 +9,7 @@ import subprocess
 import tempfile
 import time
 
-PATIENCE = 60  # seconds for an answer; a busy machine is slow
+PATIENCE = 600  # seconds for an answer; a busy machine is slow
 KEY_CODES = {'ArrowLeft': 37, 'ArrowUp': 38, 'ArrowRight': 39, 'ArrowDown': 40, 'Enter': 13, 'Tab': 9, ' ': 32,
              'Escape': 27}
 
