@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <span>
 #include <string>
@@ -41,6 +42,9 @@ void write_exr(const std::string& path, const Image& image);
 
 // 8-bit PNG of R, G, B: times 2^exposure, the tone curve of display.h, sRGB transfer.
 void write_png(const std::string& path, const Image& image, float exposure = 0);
+// The same of (height, width, 3) sRGB values as they are. Throws Error{io}.
+void write_png_bytes(const std::string& path, std::size_t width, std::size_t height,
+                     std::span<const std::uint8_t> bytes);
 
 // By extension: .exr or .png; anything else throws Error{usage}.
 void write_image(const std::string& path, const Image& image);

@@ -1,9 +1,8 @@
-// PNG through OpenImageIO: 8 bits, tone-mapped, sRGB.
-#include <OpenImageIO/imageio.h>
+// PNG through libpng: 8 bits, tone-mapped, sRGB.
+#include <png.h>
 
+#include <cassert>
 #include <cmath>
-#include <cstdint>
-#include <memory>
 
 #include "core/error.h"
 #include "core/output_file.h"
@@ -23,15 +22,21 @@ void write_png(const std::string& path, const Image& image, float exposure) {
       bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * shown)));
     }
   }
+  write_png_bytes(path, image.width, image.height, bytes);
+}
+
+void write_png_bytes(const std::string& path, std::size_t width, std::size_t height,
+                     std::span<const std::uint8_t> bytes) {
+  assert(bytes.size() == 3 * width * height);
   core::OutputFile file(path);
-  OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), 3,
-                       OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  const auto output = OIIO::ImageOutput::create("png");
-  if (!output || !output->open(file.temporary_path(), spec) ||
-      !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) || !output->close()) {
-    throw Error(ErrorCode::io, path + ": cannot write the picture: " +
-                                   (output ? output->geterror() : OIIO::geterror()));
+  png_image picture = {};
+  picture.version = PNG_IMAGE_VERSION;
+  picture.width = static_cast<png_uint_32>(width);
+  picture.height = static_cast<png_uint_32>(height);
+  picture.format = PNG_FORMAT_RGB;
+  if (png_image_write_to_file(&picture, file.temporary_path().c_str(), 0, bytes.data(), 0,
+                              nullptr) == 0) {
+    throw Error(ErrorCode::io, path + ": cannot write the picture: " + picture.message);
   }
   file.commit();
 }

@@ -1,17 +1,13 @@
 #include "study/metrics/error_picture.h"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <vector>
 
 #include "core/error.h"
-#include "core/output_file.h"
-#include "film/display.h"
 #include "film/image.h"
 
 namespace psf::study {
@@ -36,33 +32,14 @@ void write_values(const std::string& path, const Errors& errors, Metric metric,
 void write_colors(const std::string& path, const Errors& errors, Metric metric, double max,
                   const std::string& color_map) {
   const std::span<const double> map = errors.map(metric);
-  const auto width = static_cast<int>(errors.width()), height = static_cast<int>(errors.height());
-  OIIO::ImageBuf scaled(OIIO::ImageSpec(width, height, 1, OIIO::TypeDesc::FLOAT));
-  const auto for_pixels = [&](const auto& body) {
-    for (std::size_t i = 0; i < map.size(); ++i) {
-      body(i, static_cast<int>(i % errors.width()), static_cast<int>(i / errors.width()));
-    }
-  };
-  for_pixels([&](std::size_t i, int x, int y) {
-    const float value[1] = {static_cast<float>(std::min(map[i] / max, 1.0))};
-    scaled.setpixel(x, y, value);
-  });
-  // OpenImageIO gives the colours of the map in linear light.
-  OIIO::ImageBuf picture = OIIO::ImageBufAlgo::color_map(scaled, 0, color_map);
-  if (picture.has_error()) throw Error(ErrorCode::usage, path + ": " + picture.geterror());
-  for_pixels([&](std::size_t i, int x, int y) {
-    float color[3] = {0, 1, 1};
-    if (errors.non_finite()[i] == 0) {
-      for (int k = 0; k < 3; ++k) color[k] = film::srgb_from_linear(picture.getchannel(x, y, 0, k));
-    }
-    picture.setpixel(x, y, color);
-  });
-  picture.specmod().attribute("oiio:ColorSpace", "sRGB");
-  core::OutputFile file(path);
-  if (!picture.write(file.temporary_path(), OIIO::TypeDesc::UINT8, "png")) {
-    throw Error(ErrorCode::io, path + ": cannot write the picture: " + picture.geterror());
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(3 * map.size());
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    std::array<std::uint8_t, 3> color = {0, 255, 255};
+    if (errors.non_finite()[i] == 0) color = mapped_color(color_map, map[i] / max);
+    bytes.insert(bytes.end(), color.begin(), color.end());
   }
-  file.commit();
+  film::write_png_bytes(path, errors.width(), errors.height(), bytes);
 }
 
 }  // namespace

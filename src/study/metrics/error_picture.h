@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "study/metrics/color_map.h"
 #include "study/metrics/errors.h"
 #include "study/metrics/metrics.h"
 
@@ -19,12 +20,9 @@ struct ErrorScale {
 // Up to `max`; where that is 0, up to the error that 99% of the pixels do not exceed.
 [[nodiscard]] ErrorScale error_scale(const Errors& errors, Metric metric, double max = 0);
 
-// The colour maps there are, as OpenImageIO names them.
-inline constexpr const char* kColorMaps[] = {"inferno", "magma", "plasma", "viridis", "turbo"};
-
 // .exr: the errors in channel Y, not-a-number where picture or reference is not finite, with the
 // metric and its settings as attributes. .png: false colour up to `scale`; not finite is cyan.
-// Throws Error{usage} for another extension, Error{io}.
+// `color_map`: one of kColorMaps. Throws Error{usage} for another extension, Error{io}.
 void write_error_picture(const std::string& path, const Errors& errors, Metric metric,
                          const MetricOptions& options, const ErrorScale& scale,
                          const std::string& color_map);

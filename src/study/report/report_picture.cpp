@@ -1,7 +1,6 @@
 #include "study/report/report_picture.h"
 
 #include <ImathConfig.h>
-#include <OpenImageIO/strutil.h>
 #include <half.h>
 #include <zlib.h>
 
@@ -31,6 +30,24 @@ std::string deflated(const std::vector<std::uint8_t>& bytes) {
   return result;
 }
 
+// RFC 4648.
+std::string base64(const std::string& bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t at = 0; at < bytes.size(); at += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - at);
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      bits |= std::uint32_t{static_cast<unsigned char>(bytes[at + k])} << (16 - 8 * k);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += k > count ? '=' : kDigits[(bits >> (18 - 6 * k)) & 63];
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 EncodedPicture encode_picture(const film::Image& image) {
@@ -51,7 +68,7 @@ EncodedPicture encode_picture(const film::Image& image) {
       ++at;
     }
   }
-  return {image.width, image.height, OIIO::Strutil::base64_encode(deflated(bytes))};
+  return {image.width, image.height, base64(deflated(bytes))};
 }
 
 }  // namespace psf::study
