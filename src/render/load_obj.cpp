@@ -1,232 +1,153 @@
-// OBJ with MTL, by tinyobjloader. How MTL becomes our materials is documented in
-// sample_data/README.md.
+// OBJ with MTL to scenes: material libraries found, materials and meshes made. How MTL becomes our
+// materials is documented in sample_data/README.md.
 #include <fmt/format.h>
-#include <tiny_obj_loader.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <map>
-#include <sstream>
+#include <set>
+#include <unordered_map>
 
 #include "formats/error.h"
-#include "render/load_parts.h"
+#include "render/mtl.h"
+#include "render/obj_file.h"
+#include "render/obj_mesh.h"
+#include "render/text_lines.h"
 
 namespace psf::render {
 namespace {
 
-Rgb to_rgb(const tinyobj::real_t (&c)[3]) {
-  return {c[0], c[1], c[2]};
-}
-
-// Phong exponent to perceptual roughness: alpha^2 = 2 / (Ns + 2), roughness^2 = alpha.
-float roughness_of(float exponent) {
-  return std::pow(2 / (std::max(exponent, 0.0f) + 2), 0.25f);
-}
-
-Material convert(const tinyobj::material_t& mtl) {
-  Material material;
-  material.name = mtl.name;
-  material.two_sided = material.emits_two_sided = true;
-  material.reflectance = to_rgb(mtl.diffuse);
-  material.emission = to_rgb(mtl.emission);
-  if (!mtl.emissive_texname.empty() && is_black(material.emission)) material.emission = Rgb(1);
-  if (mtl.ior > 1) material.ior = mtl.ior;
-
-  const Rgb specular = to_rgb(mtl.specular), transmittance = to_rgb(mtl.transmittance);
-  const bool shiny = mtl.illum >= 2 && !is_black(specular);
-  const bool colourless = is_black(material.reflectance) && mtl.diffuse_texname.empty();
-  const bool refracts = mtl.illum == 4 || mtl.illum == 6 || mtl.illum == 7 || mtl.illum == 9;
-  if (refracts || mtl.dissolve < 0.5f) {
-    material.kind = MaterialKind::glass;
-    material.reflectance = is_black(transmittance) ? Rgb(1) : transmittance;
-  } else if (mtl.metallic > 0 || mtl.roughness > 0) {
-    material.kind = MaterialKind::coat;
-    material.roughness = mtl.roughness;
-    material.metalness = mtl.metallic;
-  } else if (shiny && colourless && (mtl.illum == 3 || mtl.illum == 5 || mtl.illum == 8)) {
-    material.kind = MaterialKind::mirror;
-    material.reflectance = specular;
-  } else if (shiny) {
-    material.kind = colourless ? MaterialKind::conductor : MaterialKind::coat;
-    if (colourless) material.reflectance = specular;
-    material.roughness = roughness_of(mtl.shininess);
-  }
-  return material;
-}
-
-// The MTL files that the OBJ names, in its folder.
-class MtlReader : public tinyobj::MaterialReader {
+class ObjLoad {
  public:
-  explicit MtlReader(const std::string& obj) : obj_(obj) {}
-  bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
-                  std::map<std::string, int>* by_name, std::string* warning,
-                  std::string* error) override {
-    const std::string path = find_file(obj_, name);
-    std::ifstream file(path, std::ios::binary);
-    if (!file) {
-      *warning += fmt::format("the material library {} cannot be opened\n", name);
-      return false;
+  ObjLoad(const std::string& path, Scene& scene) : path_(path), scene_(scene), textures_(scene) {}
+
+  void run() {
+    LeftOut left_out;
+    const ObjFile file = read_obj(path_, left_out);
+    for (const ObjFile::Libraries& line : file.libraries) add_libraries(line);
+    ObjMeshes meshes(path_, file);
+    for (const ObjPart& part : file.parts) {
+      const int material = material_of(part);
+      scene_.meshes.push_back(meshes.make(part));
+      Mesh& mesh = scene_.meshes.back();
+      mesh.material = material;
+      mesh.name = part.object + "/" + scene_.materials[static_cast<std::size_t>(material)].name;
     }
-    const std::size_t before = materials->size();
-    tinyobj::LoadMtl(by_name, materials, &file, warning, error);
-    for (std::size_t i = before; i < materials->size(); ++i) files_.resize(i + 1, path);
-    return true;
-  }
-  // The MTL file of a material.
-  [[nodiscard]] const std::string& file_of(std::size_t material) const {
-    return files_.at(material);
+    left_out.warn(path_, scene_);
+    meshes.warn(scene_);
+    warn_of_missing();
   }
 
  private:
-  const std::string& obj_;
-  std::vector<std::string> files_;
-};
-
-struct CornerLess {
-  bool operator()(const tinyobj::index_t& a, const tinyobj::index_t& b) const {
-    return std::tie(a.vertex_index, a.normal_index, a.texcoord_index) <
-           std::tie(b.vertex_index, b.normal_index, b.texcoord_index);
-  }
-};
-
-// The faces of a shape that have one material, as a mesh of its own.
-class MeshBuilder {
- public:
-  MeshBuilder(const tinyobj::attrib_t& attributes, std::string name, int material)
-      : attributes_(attributes) {
-    mesh_.name = std::move(name);
-    mesh_.material = material;
-  }
-
-  void add(const tinyobj::index_t* corners) {
-    mesh_.triangles.push_back({index_of(corners[0]), index_of(corners[1]), index_of(corners[2])});
-  }
-  Mesh take() {
-    if (!all_normals_) mesh_.normals.clear();
-    if (!any_uv_) mesh_.uvs.clear();
-    return std::move(mesh_);
-  }
-
- private:
-  std::uint32_t index_of(const tinyobj::index_t& corner) {
-    const auto next = static_cast<std::uint32_t>(mesh_.positions.size());
-    const auto [entry, is_new] = known_.try_emplace(corner, next);
-    if (!is_new) return entry->second;
-    const auto at = [](const std::vector<tinyobj::real_t>& values, int index, std::size_t stride) {
-      return values.data() + static_cast<std::size_t>(index) * stride;
+  // The names of one line are parted by spaces, but have some too: the longest run of words that is
+  // a file counts as one name.
+  void add_libraries(const ObjFile::Libraries& line) {
+    std::string_view rest = line.names;
+    std::string_view missing;  // words one after the other that are no file
+    const auto warn_of = [&] {
+      if (missing.empty()) return;
+      warn(line.line, fmt::format("the material library {} cannot be opened", missing));
+      missing = {};
     };
-    const float* p = at(attributes_.vertices, corner.vertex_index, 3);
-    mesh_.positions.emplace_back(p[0], p[1], p[2]);
-    Vec3 normal(0, 0, 0);
-    if (corner.normal_index >= 0) {
-      const float* n = at(attributes_.normals, corner.normal_index, 3);
-      normal = Vec3(n[0], n[1], n[2]);
-    } else {
-      all_normals_ = false;
+    while (!rest.empty()) {
+      const std::string_view start = rest;
+      std::size_t length = rest.size();
+      std::string found;
+      while (length > 0 && (found = find_named(path_, rest.substr(0, length))).empty()) {
+        const std::size_t space = rest.substr(0, length).find_last_of(" \t");
+        length =
+            space == std::string_view::npos ? 0 : rest.substr(0, space).find_last_not_of(" \t") + 1;
+      }
+      if (found.empty()) {
+        length = std::min(rest.find_first_of(" \t"), rest.size());
+        missing =
+            missing.empty()
+                ? rest.substr(0, length)
+                : std::string_view(missing.data(),
+                                   static_cast<std::size_t>(rest.data() + length - missing.data()));
+      } else {
+        warn_of();
+        add_library(find_file(path_, found));
+      }
+      rest.remove_prefix(length);
+      rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
+      if (rest.size() == start.size()) break;
     }
-    mesh_.normals.push_back(normal);
-    Vec2 uv(0, 0);
-    if (corner.texcoord_index >= 0) {
-      const float* t = at(attributes_.texcoords, corner.texcoord_index, 2);
-      uv = Vec2(t[0], t[1]);
-      any_uv_ = true;
-    }
-    mesh_.uvs.push_back(uv);
-    return next;
+    warn_of();
   }
 
-  const tinyobj::attrib_t& attributes_;
-  std::map<tinyobj::index_t, std::uint32_t, CornerLess> known_;
-  Mesh mesh_;
-  bool all_normals_ = true, any_uv_ = false;
+  void add_library(const std::string& library) {
+    if (!libraries_.insert(library).second) return;
+    LeftOut left_out;
+    for (const MtlMaterial& mtl : read_mtl(library, left_out)) {
+      // Libraries are searched in their order.
+      const auto [entry, is_new] =
+          materials_.try_emplace(mtl.name, static_cast<int>(scene_.materials.size()));
+      if (!is_new) {
+        scene_.warnings.push_back(
+            fmt::format("{}:{}: another material is called \"{}\", the first counts", library,
+                        mtl.line, mtl.name));
+        continue;
+      }
+      scene_.materials.push_back(to_material(mtl, library, textures_, left_out));
+    }
+    left_out.warn(library, scene_);
+  }
+
+  int material_of(const ObjPart& part) {
+    if (part.material.empty()) return plain_material();
+    auto found = materials_.find(part.material);
+    // A comment may follow the name, but # is in many names.
+    if (found == materials_.end())
+      found = materials_.find(part.material.substr(
+          0, part.material.find_last_not_of(" \t", part.material.find(" #")) + 1));
+    if (found != materials_.end()) return found->second;
+    if (std::find(missing_.begin(), missing_.end(), part.material) == missing_.end()) {
+      if (missing_.empty()) missing_line_ = part.line;
+      missing_.push_back(part.material);
+    }
+    return plain_material();
+  }
+
+  // Of faces without a material.
+  int plain_material() {
+    if (plain_ == kNone) {
+      Material plain;
+      plain.name = "default";
+      plain.emits_two_sided = true;
+      plain_ = static_cast<int>(scene_.materials.size());
+      scene_.materials.push_back(std::move(plain));
+    }
+    return plain_;
+  }
+
+  void warn_of_missing() {
+    constexpr std::size_t kMost = 8;
+    if (missing_.empty()) return;
+    const std::size_t shown = std::min(missing_.size(), kMost);
+    std::string names;
+    for (std::size_t i = 0; i < shown; ++i)
+      names += fmt::format("{}\"{}\"", i == 0 ? "" : ", ", missing_[i]);
+    if (shown < missing_.size()) names += fmt::format(" and {} more", missing_.size() - shown);
+    warn(missing_line_, "no material library has " + names + ": grey instead");
+  }
+
+  void warn(std::size_t line, const std::string& what) {
+    scene_.warnings.push_back(fmt::format("{}:{}: {}", path_, line, what));
+  }
+
+  const std::string& path_;
+  Scene& scene_;
+  TextureTable textures_;
+  std::set<std::string> libraries_;
+  std::unordered_map<std::string, int> materials_;  // by name
+  int plain_ = kNone;
+  std::vector<std::string> missing_;
+  std::size_t missing_line_ = 0;
 };
-
-std::string read_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
-    throw Error(ErrorCode::io, fmt::format("{}: cannot open: {}", path, std::strerror(errno)));
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-// Each line of what tinyobjloader said, once.
-void add_warnings(const std::string& path, const std::string& text, Scene& scene) {
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    const std::string warning = path + ": " + line;
-    const bool known =
-        std::find(scene.warnings.begin(), scene.warnings.end(), warning) != scene.warnings.end();
-    if (!line.empty() && !known) scene.warnings.push_back(warning);
-  }
-}
-
-void add_shape(const tinyobj::attrib_t& attributes, const tinyobj::shape_t& shape,
-               int default_material, Scene& scene) {
-  std::map<int, MeshBuilder> parts;  // by material
-  for (std::size_t f = 0; f < shape.mesh.num_face_vertices.size(); ++f) {
-    const int id = f < shape.mesh.material_ids.size() ? shape.mesh.material_ids[f] : kNone;
-    const int material = id >= 0 && id < default_material ? id : default_material;
-    const std::string& material_name = scene.materials[static_cast<std::size_t>(material)].name;
-    const auto [part, is_new] =
-        parts.try_emplace(material, attributes, shape.name + "/" + material_name, material);
-    part->second.add(&shape.mesh.indices[3 * f]);
-  }
-  for (auto& [material, part] : parts) scene.meshes.push_back(part.take());
-}
 
 }  // namespace
 
 void load_obj(const std::string& path, Scene& scene) {
-  std::string whole = read_text(path);
-  check_obj(path, whole);
-  std::istringstream text(std::move(whole));
-  tinyobj::attrib_t attributes;
-  std::vector<tinyobj::shape_t> shapes;
-  std::vector<tinyobj::material_t> materials;
-  std::string warning, error;
-  MtlReader reader(path);
-  if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &text, &reader, true,
-                        false)) {
-    throw Error(ErrorCode::bad_input, path + ": " + error.substr(0, error.find('\n')));
-  }
-  add_warnings(path, warning + error, scene);
-
-  TextureTable textures(scene);
-  bool bumps = false;
-  for (std::size_t i = 0; i < materials.size(); ++i) {
-    const tinyobj::material_t& mtl = materials[i];
-    Material material = convert(mtl);
-    const std::string wanted_by = reader.file_of(i) + ": material " + mtl.name;
-    const auto load = [&](const std::string& file) {
-      return file.empty() ? kNone
-                          : textures.load(reader.file_of(i), file, ColorSpace::srgb, wanted_by);
-    };
-    if (material.kind == MaterialKind::diffuse || material.kind == MaterialKind::coat) {
-      material.reflectance_texture = load(mtl.diffuse_texname);
-    }
-    material.emission_texture = load(mtl.emissive_texname);
-    bumps = bumps || !mtl.bump_texname.empty() || !mtl.normal_texname.empty();
-    scene.materials.push_back(std::move(material));
-  }
-  if (bumps) scene.warnings.push_back(path + ": bump and normal maps are left out");
-
-  // Faces without a material get one at the end, which goes again where there are none.
-  const int default_material = static_cast<int>(materials.size());
-  Material plain;
-  plain.name = "default";
-  plain.emits_two_sided = true;
-  scene.materials.push_back(plain);
-  for (const tinyobj::shape_t& shape : shapes)
-    add_shape(attributes, shape, default_material, scene);
-  const bool used = std::any_of(scene.meshes.begin(), scene.meshes.end(), [&](const Mesh& mesh) {
-    return mesh.material == default_material;
-  });
-  if (!used) scene.materials.pop_back();
+  ObjLoad(path, scene).run();
 }
 
 }  // namespace psf::render

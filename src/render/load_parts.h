@@ -43,11 +43,6 @@ void load_gltf(const std::string& path, Scene& scene);
 // One of the latter two by extension; throws Error{bad_input} for any other.
 void load_mesh_file(const std::string& path, Scene& scene);
 
-// Throws Error{bad_input} naming the line where the text of an OBJ file has a number that is no
-// number or is not finite, or an index out of range: tinyobjloader reads both as something else,
-// without a word. Blanks comments behind numbers, which it does not take.
-void check_obj(const std::string& path, std::string& text);
-
 // Adds a camera that sees everything where the scene has none, then applies the command line's
 // changes. Throws Error{usage} naming the option for values that make no sense.
 void apply_overrides(const SceneOverrides& overrides, Scene& scene);

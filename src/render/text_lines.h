@@ -1,0 +1,73 @@
+// The statements of OBJ and MTL files, a line and a word at a time.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "render/scene.h"
+
+namespace psf::render {
+
+// A byte order mark is skipped; lines end with LF, CR LF or CR, and go on after a backslash at
+// their end. Text that is not UTF-8 is taken as Latin-1 and becomes UTF-8, so that names agree
+// between files of either kind.
+class TextLines {
+ public:
+  // Reads the whole file. Throws Error{io} where it cannot be read, Error{bad_input} where it is
+  // UTF-16.
+  explicit TextLines(const std::string& path);
+
+  // Goes on to the next line that is neither empty nor a comment; false at the end.
+  bool next();
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] std::size_t line() const { return line_; }  // from 1
+  [[nodiscard]] std::string_view statement() const { return statement_; }
+
+  // The next word, empty at the end of the line or at a comment.
+  std::string_view word();
+  // What is left of the line, without white space around it: a name may hold spaces and #.
+  [[nodiscard]] std::string_view rest() const;
+  // Drops `count` characters of rest().
+  void skip(std::size_t count);
+
+  // The next word as a number. Throws Error{bad_input} naming `kind` and, above 0, `index` where
+  // there is none, or none that is finite in single precision: "vertex 3".
+  float number(std::string_view kind, std::size_t index = 0);
+  // The same for a word already read.
+  [[nodiscard]] float to_number(std::string_view word, std::string_view kind,
+                                std::size_t index = 0) const;
+  // Whether `word` is a number and nothing else.
+  [[nodiscard]] static bool is_number(std::string_view word);
+
+  // Throws Error{bad_input} "FILE:LINE: what".
+  [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  [[nodiscard]] std::size_t find_line_end(std::size_t from) const;
+
+  std::string path_, text_;
+  std::size_t at_ = 0;     // where the next line starts
+  std::size_t line_ = 0;   // of the statement
+  std::size_t lines_ = 0;  // before at_
+  std::string_view statement_, rest_;
+};
+
+// Names of what a file says and the picture does not show, each once.
+class LeftOut {
+ public:
+  void add(std::string name);
+  // One warning that names all of it, none where nothing is left out.
+  void warn(const std::string& path, Scene& scene) const;
+
+ private:
+  std::vector<std::string> names_;
+};
+
+// The spelling of `name` with which find_file finds a file: as it is, without quotes around it,
+// with spaces for "\ ", or with the bytes that it had where the text was Latin-1. Empty where none
+// does.
+[[nodiscard]] std::string find_named(const std::string& beside, std::string_view name);
+
+}  // namespace psf::render
