@@ -24,6 +24,8 @@ std::string read_text(const std::string& path) {
   if (std::filesystem::is_directory(path, ignored))
     throw Error(ErrorCode::io, path + ": is a folder");
   std::ifstream file(path, std::ios::binary);
+  if (!file)
+    throw Error(ErrorCode::io, fmt::format("{}: cannot open: {}", path, std::strerror(errno)));
   std::string text;
   if (file.seekg(0, std::ios::end)) {
     text.resize(static_cast<std::size_t>(file.tellg()));
