@@ -11,6 +11,7 @@
 #include "filter/inputs.h"
 #include "filter/problem.h"
 #include "filter/radius.h"
+#include "filter/scaled.h"
 
 namespace psf::filter {
 namespace {
@@ -47,12 +48,9 @@ void leave_out_queries(Average& result) {
   result.statistics.without_source = result.statistics.queries;
 }
 
-}  // namespace
-
-Average average(const Records& records, std::span<const float> radius, const Block& block,
-                const Parameters& parameters) {
-  parameters.validate();
-  require_channels(records, parameters);
+// In a unit in which squares are floats.
+Average average_scaled(const Records& records, std::span<const float> radius, const Block& block,
+                       const Parameters& parameters) {
   if (parameters.estimator == Estimator::control) {
     return control(records, radius, block, parameters);
   }
@@ -93,6 +91,19 @@ Average average(const Records& records, std::span<const float> radius, const Blo
   finish(records, roles, radius, parameters, result);
   result.roles = std::move(roles.of);
   result.statistics.seconds_filter = seconds_since(filter_start);
+  return result;
+}
+
+}  // namespace
+
+Average average(const Records& records, std::span<const float> radius, const Block& block,
+                const Parameters& parameters) {
+  parameters.validate();
+  require_channels(records, parameters);
+  const bool adaptive = parameters.estimator == Estimator::adaptive;
+  const Scaled scaled(records, radius, adaptive ? kAdaptiveLeastShare : 1);
+  Average result = average_scaled(scaled.records(), scaled.radius(), block, parameters);
+  for (float& r_i : result.radius) r_i = scaled.to_world(r_i);
   return result;
 }
 

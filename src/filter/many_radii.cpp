@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "core/interrupt.h"
 #include "core/parallel.h"
@@ -9,6 +10,7 @@
 #include "filter/engine/ring_engine.h"
 #include "filter/inputs.h"
 #include "filter/radius.h"
+#include "filter/scaled.h"
 
 namespace psf::filter {
 namespace {
@@ -33,6 +35,11 @@ struct Scales {
       of.push_back(static_cast<std::size_t>(std::lower_bound(values.begin(), values.end(), scale) -
                                             values.begin()));
     }
+  }
+  // Of the largest, the least that is not 0.
+  [[nodiscard]] double least_share() const {
+    const auto least = std::upper_bound(values.begin(), values.end(), 0.0);
+    return least == values.end() ? 1 : *least / values.back();
   }
   [[nodiscard]] bool can_share() const { return values.back() > 0 && values.size() <= kMostRings; }
 };
@@ -62,19 +69,24 @@ class Many {
   bool in_one_traversal(const Scales& scales) {
     const auto start = Clock::now();
     require_channels(r_, parameters_);
-    Statistics counts;
-    Roles roles = find_roles(r_, block_, parameters_, counts);
-    if (roles.sources.empty()) return false;
     std::vector<double> basis(r_.size());
     std::vector<float> largest(r_.size());
     for (std::size_t i = 0; i < r_.size(); ++i) {
       basis[i] = basis_of(radii_[0], r_, block_, i);
       largest[i] = static_cast<float>(scales.values.back() * basis[i]);
     }
+    const Scaled scaled(r_, largest, scales.least_share());
+    // Radii too far apart for one unit have one each, as in runs of their own.
+    if (!scaled.fits() && Scaled(r_, largest).fits()) return false;
+    for (double& f : basis) f = std::ldexp(f, scaled.exponent());
+    const Records& records = scaled.records();
+    Statistics counts;
+    Roles roles = find_roles(records, block_, parameters_, counts);
+    if (roles.sources.empty()) return false;
     std::vector<float> area;
-    if (parameters_.estimator == Estimator::disk) area = areas(r_, roles, block_);
-    const Weights weights(r_, parameters_.weights);
-    const Problem problem{r_, roles, largest, weights, area};
+    if (parameters_.estimator == Estimator::disk) area = areas(records, roles, block_);
+    const Weights weights(records, parameters_.weights);
+    const Problem problem{records, roles, scaled.radius(), weights, area};
     engine::RingEngine engine(problem, scales.values, basis);
     if (!engine.is_moderate()) return false;
     std::vector<Rgb> divided;
@@ -171,7 +183,7 @@ class Many {
     }
   }
 
-  const Records& r_;
+  const Records& r_;  // world units
   const Block& block_;
   const Parameters& parameters_;
   std::span<const Radius> radii_;

@@ -12,7 +12,7 @@ namespace psf::study {
 
 BlockExplainer::BlockExplainer(const filter::Records& records, const filter::Block& block,
                                const filter::Parameters& parameters)
-    : records_(records), parameters_(parameters), weights_(records, parameters.weights) {
+    : parameters_(parameters) {
   std::vector<float> given;
   filter::radii(parameters.radius, records, block, given);
   average_ = filter::average(records, given, block, parameters);
@@ -21,17 +21,21 @@ BlockExplainer::BlockExplainer(const filter::Records& records, const filter::Blo
     --fewer.iterations;
     before_ = filter::average(records, given, block, fewer).c_bar;
   }
-  radius_ = average_.radius.empty() ? given : average_.radius;
+  radius_in_world_ = average_.radius.empty() ? given : average_.radius;
+  scaled_.emplace(records, radius_in_world_);
+  records_ = scaled_->records();
+  radius_ = scaled_->radius();
+  weights_.emplace(records_, parameters.weights);
   roles_.of = average_.roles;
   std::vector<Vec3> positions;
   for (std::uint32_t j = 0; j < records.size(); ++j) {
     if (roles_.of[j] != filter::Role::source) continue;
     roles_.sources.push_back(j);
-    positions.push_back(records.position[j]);
+    positions.push_back(records_.position[j]);
   }
   search_ = search::make_search(search::Kind::brute, positions);
   if (parameters.estimator == filter::Estimator::disk) {
-    area_ = filter::areas(records, roles_, block);
+    area_ = filter::areas(records_, roles_, block);
   }
 }
 
@@ -41,7 +45,7 @@ ExplainedPath BlockExplainer::explain(std::uint32_t i, std::vector<ExplainedPair
   path.vertex = i;
   path.fate = fate_of(i);
   if (path.fate == PathFate::no_vertex || path.fate == PathFate::left_out) return path;
-  path.radius = radius_[i];
+  path.radius = radius_in_world_[i];
   path.c_bar = average_.c_bar[i];
   path.neighbors = average_.neighbors[i];
   find_pairs(i, pairs, room);
@@ -88,9 +92,9 @@ void BlockExplainer::find_pairs(std::uint32_t i, std::vector<ExplainedPair>& pai
   const auto add = [&](std::uint32_t j, float d_sq) {
     ExplainedPair pair;
     pair.vertex = j;
-    pair.distance = std::sqrt(d_sq);
+    pair.distance = scaled_->to_world(std::sqrt(d_sq));
     pair.self = j == i;
-    pair.refusers = pair.self ? 0 : weights_.refusers(i, j, radius_[i]);
+    pair.refusers = pair.self ? 0 : weights_->refusers(i, j, radius_[i]);
     pair.in_ball = true;
     pair.averaged = pair.refusers == 0;
     if (is_disk(i)) pair.area = area_[j];
@@ -105,7 +109,7 @@ void BlockExplainer::find_pairs(std::uint32_t i, std::vector<ExplainedPair>& pai
 
 // Marks or adds the sources that an orphan averages; they have no areas.
 void BlockExplainer::adopt(std::uint32_t i, std::vector<ExplainedPair>& pairs) const {
-  const filter::Problem problem{records_, roles_, radius_, weights_, {}};
+  const filter::Problem problem{records_, roles_, radius_, *weights_, {}};
   for (const std::uint32_t j : filter::adopt(*search_, problem, i).sources) {
     auto pair = std::find_if(pairs.begin(), pairs.end(),
                              [j](const ExplainedPair& of) { return of.vertex == j; });
@@ -113,8 +117,9 @@ void BlockExplainer::adopt(std::uint32_t i, std::vector<ExplainedPair>& pairs) c
       pairs.emplace_back();
       pair = pairs.end() - 1;
       pair->vertex = j;
-      pair->distance = std::sqrt(search::distance_sq(records_.position[i], records_.position[j]));
-      pair->refusers = weights_.refusers(i, j, radius_[i]);
+      pair->distance = scaled_->to_world(
+          std::sqrt(search::distance_sq(records_.position[i], records_.position[j])));
+      pair->refusers = weights_->refusers(i, j, radius_[i]);
     }
     pair->averaged = true;
     pair->area = 1;

@@ -4,12 +4,14 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "filter/average.h"
 #include "filter/orphans.h"  // and the search that adopt() wants
 #include "filter/roles.h"
+#include "filter/scaled.h"
 #include "filter/weights.h"
 #include "study/explain/explain.h"
 
@@ -43,13 +45,16 @@ class BlockExplainer {
                   std::atomic<std::int64_t>& room) const;
   void adopt(std::uint32_t i, std::vector<ExplainedPair>& pairs) const;
 
-  filter::Records records_;
   const filter::Parameters& parameters_;
-  filter::Weights weights_;
-  filter::Roles roles_;
-  std::vector<float> radius_, area_;  // r_i, as chosen; A_j of [disk]
   filter::Average average_;
-  std::vector<Rgb> before_;                 // c_bar of the iteration before the last
+  std::vector<Rgb> before_;             // c_bar of the iteration before the last
+  std::vector<float> radius_in_world_;  // r_i, as chosen, world units
+  std::optional<filter::Scaled> scaled_;
+  filter::Records records_;        // in its unit
+  std::span<const float> radius_;  // likewise
+  std::optional<filter::Weights> weights_;
+  filter::Roles roles_;
+  std::vector<float> area_;                 // A_j of [disk]
   std::unique_ptr<search::Search> search_;  // over the sources
 };
 
