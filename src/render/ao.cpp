@@ -41,6 +41,7 @@ PathRecord AoIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool sha
       continue;
     }
     transport_.record_vertex(v, walk, record);
+    record.roughness = 1;  // occlusion is the same from wherever it is looked at
     if (!shade) return record;
     record.shaded = true;
     std::uint32_t open = 0;

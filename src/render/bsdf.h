@@ -48,6 +48,10 @@ class Bsdf {
   [[nodiscard]] bool chooses() const { return lobes_ == kGlass || lobes_ == (kDiffuse | kGlossy); }
   // Perceptual roughness of the roughest lobe; 1 for diffuse, 0 for mirror and glass.
   [[nodiscard]] float roughness() const { return (lobes_ & kDiffuse) != 0 ? 1.0f : roughness_; }
+  // Perceptual roughness of the smoothest lobe: what the direction of view matters to.
+  [[nodiscard]] float least_roughness() const {
+    return (lobes_ & kGlossy) != 0 ? roughness_ : roughness();
+  }
   // Both lobes are there and only the diffuse one reaches `threshold`; a perfect lobe never does.
   [[nodiscard]] bool straddles(float threshold) const {
     return lobes_ == (kDiffuse | kGlossy) && (roughness_ < threshold || alpha_ < kLeastAlpha);

@@ -144,7 +144,7 @@ void Transport::record_vertex(const Vertex& v, const Walk& walk, PathRecord& rec
   record.throughput = walk.throughput;
   record.direction = v.out;
   record.material = static_cast<std::uint32_t>(v.surface.material);
-  record.roughness = v.bsdf.roughness();
+  record.roughness = v.bsdf.least_roughness();
 }
 
 }  // namespace psf::render

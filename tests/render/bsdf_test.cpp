@@ -240,6 +240,13 @@ TEST_CASE("A coat smoother than the threshold is two things, a rougher one is on
   glossy.keep(Bsdf::kGlossy);
   CHECK(diffuse.roughness() == 1);
   CHECK(glossy.roughness() == 0.1f);
+  CHECK(smooth.bsdf().roughness() == 1);
+  // What the filter is told: how sharply the light of the lobes kept depends on the direction.
+  CHECK(smooth.bsdf().least_roughness() == 0.1f);
+  CHECK(diffuse.least_roughness() == 1);
+  CHECK(glossy.least_roughness() == 0.1f);
+  CHECK(Fixture({"", MaterialKind::diffuse, 0.5f, 0, 0}).bsdf().least_roughness() == 1);
+  CHECK(Fixture({"", MaterialKind::conductor, 0.5f, 0.4f, 0}).bsdf().least_roughness() == 0.4f);
   CHECK(diffuse.albedo().y == 0.5f);
   CHECK(glossy.albedo().y == Approx(0.04).epsilon(1e-3));
   const Vec3 o = direction(0.7, 0), i = direction(0.72, 3.1);
