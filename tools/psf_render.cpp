@@ -80,22 +80,19 @@ std::string format_bytes(double bytes) {
   return fmt::format("{:.1f} kB", bytes / 1e3);
 }
 
-// `files`: that the scene was loaded from. A dump that goes on is an output alone.
-void check_files(const RenderOptions& options, std::vector<std::string> files,
-                 std::vector<std::string> images) {
-  files.insert(files.end(), {options.scene, options.overrides.sky_map.value_or("")});
-  images.insert(images.end(), {options.output, options.common.json});
-  check_files(files, images);
+// A dump that goes on is an output alone.
+void check_all_files(const RenderOptions& options, std::vector<std::string> outputs) {
+  outputs.insert(outputs.end(), {options.output, options.common.json});
+  check_files({options.scene, options.overrides.sky_map.value_or("")}, outputs);
 }
 
 // With --resume a file that is there goes on; one that is not is begun.
 formats::Writer open_writer(const RenderOptions& options, const formats::Head& head) {
   formats::WriterOptions writer_options;
   writer_options.codec = options.codec;
-  if (!options.resume || !std::filesystem::exists(options.output)) {
-    return {options.output, head, writer_options};
-  }
-  formats::Writer writer = formats::Writer::resume(options.output, head, writer_options);
+  const std::string path = core::followed(options.output);
+  if (!options.resume || !std::filesystem::exists(path)) return {path, head, writer_options};
+  formats::Writer writer = formats::Writer::resume(path, head, writer_options);
   if (!options.common.quiet) {
     core::say(fmt::format("note: {} has {} of {} passes", options.output, writer.passes(),
                           options.settings.passes));
@@ -106,7 +103,7 @@ formats::Writer open_writer(const RenderOptions& options, const formats::Head& h
 void run(RenderOptions& options) {
   const core::ThreadLimit threads(options.common.threads);
   check_outputs(options);
-  check_files(options, {}, options.images);  // what can be said before anything is loaded
+  check_all_files(options, options.images);  // what can be said before anything is loaded
   const auto start = std::chrono::steady_clock::now();
   const render::Scene scene = render::load_scene(options.scene, options.overrides);
   if (!options.common.quiet) {
@@ -124,7 +121,7 @@ void run(RenderOptions& options) {
   std::vector<std::string> camera_names;
   for (const std::size_t camera : cameras) camera_names.push_back(scene.cameras[camera].name);
   const PictureNames names(options.images, camera_names);
-  check_files(options, scene.files, names.all({}));
+  check_all_files(options, names.all({}));
   if (!options.output.empty()) {
     writer.emplace(open_writer(options, render::make_head(scene, *integrator, settings)));
   }

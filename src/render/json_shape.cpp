@@ -173,7 +173,6 @@ void add_mesh_file(const JsonCursor& json, int material, bool flipped,
     if (flipped) flip(mesh);
     add_mesh(json, mesh, placements, load);
   }
-  for (std::string& name : part.files) scene.files.push_back(std::move(name));
   for (std::string& warning : part.warnings) scene.warnings.push_back(std::move(warning));
 }
 

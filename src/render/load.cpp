@@ -59,7 +59,6 @@ int TextureTable::load(const std::string& scene_file, const std::string& file,
   const std::string path = find_file(scene_file, file);
   const auto [entry, is_new] = known_.try_emplace({path, color_space}, kNone);
   if (!is_new) return entry->second;
-  scene_.files.push_back(path);
   try {
     scene_.textures.push_back(Texture::load(path, color_space));
   } catch (const Error& error) {
@@ -70,7 +69,6 @@ int TextureTable::load(const std::string& scene_file, const std::string& file,
 }
 
 void load_mesh_file(const std::string& path, Scene& scene) {
-  scene.files.push_back(path);
   const std::string extension = lower(fs::path(path).extension().string());
   if (extension == ".obj") return load_obj(path, scene);
   if (extension == ".gltf" || extension == ".glb") return load_gltf(path, scene);

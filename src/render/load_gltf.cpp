@@ -151,10 +151,6 @@ void GltfLoad::warn_once(const std::string& what) {
 void load_gltf(const std::string& path, Scene& scene) {
   GltfLoad load{path, {}, scene, TextureTable(scene), {}, 0, kNone};
   parse(load);
-  for (const tinygltf::Buffer& buffer : load.model.buffers) {
-    const bool is_file = !buffer.uri.empty() && !buffer.uri.starts_with("data:");
-    if (is_file) scene.files.push_back(find_file(path, buffer.uri));
-  }
   check_extensions(load);
   add_gltf_materials(load);
   for (const int node : root_nodes(load)) add_node(load, node, Mat4(), 0);

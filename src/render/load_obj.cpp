@@ -76,7 +76,6 @@ class ObjLoad {
 
   void add_library(const std::string& library) {
     if (!libraries_.insert(library).second) return;
-    scene_.files.push_back(library);
     LeftOut left_out;
     for (const MtlMaterial& mtl : read_mtl(library, left_out)) {
       // Libraries are searched in their order.

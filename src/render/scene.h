@@ -95,7 +95,6 @@ struct Scene {
   std::vector<Light> lights;
   Environment environment;
   std::vector<Camera> cameras;
-  std::vector<std::string> files;     // that it was loaded from
   std::vector<std::string> warnings;  // what was repaired or left out while loading, one line each
 };
 

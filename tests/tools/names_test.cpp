@@ -5,7 +5,6 @@
 #include "catch.h"
 #include "confined.h"
 #include "every_verb.h"
-#include "film/image.h"
 
 namespace fs = std::filesystem;
 using namespace psf::tests;
@@ -21,8 +20,6 @@ struct Clash {
 const std::vector<Clash> kClashes = {
     {"psf-render OUT/room.json -o OUT/b.pvb --json OUT/room.json", "room.json"},
     {"psf-render OUT/room.json --image OUT/sky.exr --sky OUT/sky.exr", "sky.exr"},
-    {"psf-render OUT/model.obj -o OUT/b.pvb --json OUT/model.mtl", "model.mtl"},
-    {"psf-render OUT/model.obj --image OUT/texture.png", "texture.png"},
     {"psf filter OUT/a.pvb -o OUT/f.exr --json OUT/a.pvb", "a.pvb"},
     {"psf filter OUT/a.pvb -o OUT/f.exr --json OUT/tuned.json --tuned OUT/tuned.json",
      "tuned.json"},
@@ -76,10 +73,6 @@ void place_inputs(const VerbInputs& inputs) {
   fs::create_directory(inputs.out() + "study");
   fs::copy(inputs.in() + "a.exr", inputs.out() + "study/0001.exr");
   fs::copy(inputs.in() + "a.pvb", inputs.out() + "study/sweep.csv");
-  std::ofstream(inputs.out() + "model.obj") << "mtllib model.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\n"
-                                               "v 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n";
-  std::ofstream(inputs.out() + "model.mtl") << "newmtl m\nKd 1 1 1\nmap_Kd texture.png\n";
-  psf::film::write_image(inputs.out() + "texture.png", psf::film::read_exr(inputs.in() + "a.exr"));
 }
 
 void check_refused(const VerbInputs& inputs, const std::string& command) {

@@ -46,7 +46,7 @@ void run(const CatOptions& options) {
   check_files(options.inputs, {options.common.json});
   std::unique_ptr<core::Progress> progress;
   const formats::ConcatenateReport report = formats::concatenate(
-      options.inputs, options.output, to_library(options),
+      options.inputs, core::followed(options.output), to_library(options),
       [&](std::uint64_t done, std::uint64_t total) {
         core::throw_if_interrupted("nothing is written");
         if (!progress) {

@@ -59,7 +59,8 @@ void run(const RecoverVerb& verb) {
   check_files({verb.input}, {verb.output, verb.common.json});
   std::unique_ptr<core::Progress> progress;
   const formats::RecoverReport report = formats::recover(
-      verb.input, verb.output, verb.options, [&](std::uint64_t done, std::uint64_t total) {
+      verb.input, core::followed(verb.output), verb.options,
+      [&](std::uint64_t done, std::uint64_t total) {
         core::throw_if_interrupted("nothing is written");
         if (!progress) {
           progress = std::make_unique<core::Progress>("recover", total, verb.common.quiet);
