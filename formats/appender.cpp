@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
-#include <cstdio>
+#include <climits>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "formats/error.h"
@@ -73,6 +74,7 @@ std::unique_ptr<Appender> Appender::create(const std::string& path, const Head& 
   FrameWriter frames(File::create(partial_path(path)), options.uuid ? *options.uuid : make_uuid());
   std::unique_ptr<Appender> made(new Appender(path, head, options.sync, std::move(frames)));
   made->appear_ = appear;
+  made->unfinished_.emplace(partial_path(path));
   // A file that grows under this name would be lost when ours gets it.
   if (File::is_being_written(path)) {
     throw Error(ErrorCode::io,
@@ -125,9 +127,7 @@ Appender::Appender(const std::string& path, const Head& head, bool sync, FrameWr
 Appender::~Appender() {
   if (!frames_) return;
   try {
-    if (!appeared_) {
-      std::remove(current_path().c_str());
-    } else if (!untouched_) {
+    if (appeared_ && !untouched_) {
       frames_->file().truncate(committed_end_);  // what is not committed is of no use to anyone
     }
   } catch (const Error&) {
@@ -217,6 +217,7 @@ void Appender::write_commit(std::uint32_t flags) {
 
 void Appender::appear() {
   rename_file(current_path(), path_, sync_);
+  unfinished_->keep();
   frames_->file().set_path(path_);
   appeared_ = true;
 }
@@ -232,7 +233,9 @@ std::string Appender::current_path() const {
 }
 
 std::string Appender::partial_path(const std::string& path) {
-  return path + kPartial;
+  const std::size_t name = path.rfind('/') + 1;  // 0 where there is none
+  const std::size_t most = NAME_MAX - std::string_view(kPartial).size();
+  return path.substr(0, name) + path.substr(name, most) + kPartial;
 }
 
 }  // namespace psf::formats

@@ -14,6 +14,7 @@
 #include "formats/frame_writer.h"
 #include "formats/head.h"
 #include "formats/reader.h"
+#include "formats/unfinished.h"
 #include "formats/writer.h"
 
 namespace psf::formats {
@@ -48,7 +49,8 @@ class Appender {
   void close();
   void publish();
 
-  // What a new file is called until it appears: no input of its own may have that name.
+  // What a new file is called until it appears, `path`.partial with a long name cut: no input of
+  // its own may have that name.
   [[nodiscard]] static std::string partial_path(const std::string& path);
 
   [[nodiscard]] const std::string& path() const { return path_; }  // the final one
@@ -82,6 +84,8 @@ class Appender {
   SlotRecord last_record_;             // of the commit that was resumed from
   std::uint32_t last_flags_ = 0;       // of the last commit
   std::optional<FrameWriter> frames_;  // until the file is done with
+  // Of a new file: removed unless it appears, before frames_ gives up the lock.
+  std::optional<Unfinished> unfinished_;
 
   std::vector<std::byte> resume_;
   std::vector<ChunkEntry> index_;  // of all chunks

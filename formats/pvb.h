@@ -1195,18 +1195,24 @@ static int pvbi_make_uuid(pvb_file* f, const pvb_options* options) {
 
 pvb_file* pvb_create(const char* path, const pvb_channel* channels, size_t channel_count,
                      const char* metadata, const pvb_options* options) {
+  const char* slash;
+  size_t kept;
   pvb_file* f = pvbi_new(path);
   if (f == PVBI_NULL || f->code != 0) return f;
   f->no_sync = options != PVBI_NULL && options->no_sync;
   f->info.chunk_capacity =
       options != PVBI_NULL && options->chunk_capacity != 0 ? options->chunk_capacity : 65536;
-  f->partial = PVBI_CAST(char*, malloc(strlen(path) + sizeof ".partial"));
+  // A name as long as the file system takes it is cut: its last part to 255 bytes with ".partial".
+  slash = strrchr(path, '/');
+  kept = slash == PVBI_NULL ? 0 : PVBI_CAST(size_t, slash + 1 - path);
+  kept += strlen(path + kept) > 247 ? 247 : strlen(path + kept);
+  f->partial = PVBI_CAST(char*, malloc(kept + sizeof ".partial"));
   if (f->partial == PVBI_NULL) {
     pvbi_fail_memory(f);
     return f;
   }
-  memcpy(f->partial, path, strlen(path));
-  memcpy(f->partial + strlen(path), ".partial", sizeof ".partial");
+  memcpy(f->partial, path, kept);
+  memcpy(f->partial + kept, ".partial", sizeof ".partial");
   if (pvbi_declare(f, channels, channel_count, metadata) != 0 || pvbi_check_capacity(f) != 0 ||
       pvbi_make_uuid(f, options) != 0 || pvbi_prepare_chunk(f) != 0 || pvbi_hold_replaced(f) != 0) {
     return f;

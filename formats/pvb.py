@@ -1142,7 +1142,9 @@ def create(path, channels, metadata=None, codec="raw", chunk_capacity=65536, syn
     for channel in channels.values():
         directory += CHANNEL.pack(channel.name.encode("ascii"), TYPES[channel.type][0],
                                   channel.components, ENCODINGS.index(channel.encoding))
-    partial = path + ".partial"
+    # A name as long as the file system takes it is cut: its last part to 255 bytes with ".partial".
+    folder, name = os.path.split(os.fsencode(path))
+    partial = os.fsdecode(os.path.join(folder, name[:247] + b".partial"))
     with _system(path, "create"):
         descriptor = _lock(partial, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, partial)
         writer = Writer(path, descriptor, channels, chunk_capacity, code, sync,

@@ -9,16 +9,20 @@
 #include <string>
 #include <vector>
 
+#include "core/apart.h"
 #include "core/interrupt.h"
+#include "core/output_file.h"
+#include "core/standard_streams.h"
 #include "formats/error.h"
 
 namespace psf::tools {
 namespace {
 
-int fail(const std::string& program, const std::string& message, ErrorCode code) {
-  fmt::print(stderr, "{}: {}\n", program, message);
-  return static_cast<int>(code);
-}
+// How a run ended: without a message, well.
+struct Ending {
+  ErrorCode code{};
+  std::string program, message;
+};
 
 // The innermost subcommand that was parsed: its name is what the user must ask for help.
 const CLI::App* selected(const CLI::App* app) {
@@ -40,6 +44,30 @@ std::string explain(const CLI::App& command, const CLI::ParseError& error) {
          rest.front();
 }
 
+// Parses and works.
+Ending run(CLI::App& app, int argc, char** argv) {
+  const std::string program = app.get_name();
+  try {
+    app.parse(argc, argv);
+    return {};
+  } catch (const CLI::Success& success) {  // --help, --version
+    static_cast<void>(app.exit(success));
+    return {};
+  } catch (const CLI::ParseError& error) {
+    const CLI::App* command = selected(&app);
+    const std::string name = full_name(command);
+    return {ErrorCode::usage, name,
+            fmt::format("{}; see {} --help", explain(*command, error), name)};
+  } catch (const Error& error) {
+    return {error.code(), program, error.what()};
+  } catch (const std::bad_alloc&) {
+    return {ErrorCode::limit, program, "out of memory; use a smaller block or picture"};
+  } catch (const std::exception& error) {
+    if (std::ferror(stdout) != 0) return {};  // {fmt} throws where it cannot print: see run_tool()
+    return {ErrorCode::io, program, error.what()};
+  }
+}
+
 }  // namespace
 
 void add_common(CLI::App& command, CommonOptions& options, bool with_json) {
@@ -49,6 +77,13 @@ void add_common(CLI::App& command, CommonOptions& options, bool with_json) {
   if (with_json) {
     command.add_option("--json", options.json, "write the figures to this file, for programs")
         ->type_name("FILE");
+  }
+}
+
+void check_files(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
+  core::check_apart(inputs, outputs);
+  for (const std::string& path : outputs) {
+    if (!path.empty()) const core::OutputFile probe(path);
   }
 }
 
@@ -65,24 +100,20 @@ void keep_freed_memory() {
 }
 
 int run_tool(CLI::App& app, int argc, char** argv) {
+  core::open_standard_streams();
   core::watch_interrupts();
-  try {
-    app.parse(argc, argv);
-    return 0;
-  } catch (const CLI::Success& success) {  // --help, --version
-    return app.exit(success);
-  } catch (const CLI::ParseError& error) {
-    const CLI::App* command = selected(&app);
-    const std::string name = full_name(command);
-    return fail(name, fmt::format("{}; see {} --help", explain(*command, error), name),
-                ErrorCode::usage);
-  } catch (const Error& error) {
-    return fail(app.get_name(), error.what(), error.code());
-  } catch (const std::bad_alloc&) {
-    return fail(app.get_name(), "out of memory; use a smaller block or picture", ErrorCode::limit);
-  } catch (const std::exception& error) {
-    return fail(app.get_name(), error.what(), ErrorCode::io);
+  Ending ending = run(app, argc, argv);
+  // The comparison failed, but of what it found some is lost.
+  if (ending.message.empty() || ending.code == ErrorCode::comparison) {
+    try {
+      core::flush_standard_output();
+    } catch (const Error& error) {
+      ending = {error.code(), app.get_name(), error.what()};
+    }
   }
+  if (ending.message.empty()) return 0;
+  core::say(ending.program + ": " + ending.message);
+  return static_cast<int>(ending.code);
 }
 
 }  // namespace psf::tools

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace psf::tools {
 
@@ -14,11 +15,15 @@ struct CommonOptions {
   std::string json;  // figures for programs go here; empty: nowhere
 };
 
+// What every verb does before it works: throws Error{usage} where an output is an input or another
+// output (core/apart.h), Error{io} where one cannot be written. Empty names are none.
+void check_files(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
+
 // --threads, --quiet, --json. A verb without figures leaves json out.
 void add_common(CLI::App& command, CommonOptions& options, bool with_json = true);
 
 // Parses, runs the callbacks, returns the exit code of ErrorCode. `command` callbacks do the work
-// and throw.
+// and throw. Where what was printed does not get out that is an error, too.
 int run_tool(CLI::App& app, int argc, char** argv);
 
 // What a block of a filter gives back the next one takes: without going through the system, which

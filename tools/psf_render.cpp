@@ -11,11 +11,14 @@
 #include <optional>
 
 #include "core/interrupt.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/standard_streams.h"
 #include "film/image.h"
 #include "formats/error.h"
+#include "picture_names.h"
 #include "render/render.h"
 #include "render_options.h"
 #include "version.h"
@@ -71,37 +74,28 @@ film::Image make_image(const render::Scene& scene, const render::Camera& camera,
   return image;
 }
 
-// "out.exr" and camera "left" -> "out.left.exr"; what a file name cannot hold becomes "_".
-std::string image_path(const std::string& path, std::string camera, bool several) {
-  if (!several) return path;
-  std::replace_if(
-      camera.begin(), camera.end(),
-      [](unsigned char c) {
-        return c < 32 ||
-               std::string_view("/\\:*?\"<>|").find(static_cast<char>(c)) != std::string_view::npos;
-      },
-      '_');
-  const std::filesystem::path p(path);
-  return (p.parent_path() / (p.stem().string() + "." + camera + p.extension().string())).string();
-}
-
 std::string format_bytes(double bytes) {
   if (bytes >= 1e9) return fmt::format("{:.2f} GB", bytes / 1e9);
   if (bytes >= 1e6) return fmt::format("{:.1f} MB", bytes / 1e6);
   return fmt::format("{:.1f} kB", bytes / 1e3);
 }
 
+// A dump that goes on is an output alone.
+void check_all_files(const RenderOptions& options, std::vector<std::string> outputs) {
+  outputs.insert(outputs.end(), {options.output, options.common.json});
+  check_files({options.scene, options.overrides.sky_map.value_or("")}, outputs);
+}
+
 // With --resume a file that is there goes on; one that is not is begun.
 formats::Writer open_writer(const RenderOptions& options, const formats::Head& head) {
   formats::WriterOptions writer_options;
   writer_options.codec = options.codec;
-  if (!options.resume || !std::filesystem::exists(options.output)) {
-    return {options.output, head, writer_options};
-  }
-  formats::Writer writer = formats::Writer::resume(options.output, head, writer_options);
+  const std::string path = core::followed(options.output);
+  if (!options.resume || !std::filesystem::exists(path)) return {path, head, writer_options};
+  formats::Writer writer = formats::Writer::resume(path, head, writer_options);
   if (!options.common.quiet) {
-    fmt::print(stderr, "note: {} has {} of {} passes\n", options.output, writer.passes(),
-               options.settings.passes);
+    core::say(fmt::format("note: {} has {} of {} passes", options.output, writer.passes(),
+                          options.settings.passes));
   }
   return writer;
 }
@@ -109,10 +103,11 @@ formats::Writer open_writer(const RenderOptions& options, const formats::Head& h
 void run(RenderOptions& options) {
   const core::ThreadLimit threads(options.common.threads);
   check_outputs(options);
+  check_all_files(options, options.images);  // what can be said before anything is loaded
   const auto start = std::chrono::steady_clock::now();
   const render::Scene scene = render::load_scene(options.scene, options.overrides);
   if (!options.common.quiet) {
-    for (const std::string& warning : scene.warnings) fmt::print(stderr, "note: {}\n", warning);
+    for (const std::string& warning : scene.warnings) core::say("note: " + warning);
   }
   auto& settings = options.settings;
   settings.producer = std::string("psf-render ") + kVersion;
@@ -122,6 +117,11 @@ void run(RenderOptions& options) {
   const auto integrator = render::make_integrator(scene, settings.integrator);
   settings.replay = !options.images.empty();
   std::optional<formats::Writer> writer;
+  const auto cameras = render::chosen_cameras(scene, settings);
+  std::vector<std::string> camera_names;
+  for (const std::size_t camera : cameras) camera_names.push_back(scene.cameras[camera].name);
+  const PictureNames names(options.images, camera_names);
+  check_all_files(options, names.all({}));
   if (!options.output.empty()) {
     writer.emplace(open_writer(options, render::make_head(scene, *integrator, settings)));
   }
@@ -132,14 +132,13 @@ void run(RenderOptions& options) {
   const render::RenderResult result =
       render::render(scene, *integrator, settings, writer ? &*writer : nullptr);
 
-  const auto cameras = render::chosen_cameras(scene, settings);
   std::vector<std::string> images;
   for (std::size_t k = 0; k < cameras.size(); ++k) {
     const render::Camera& camera = scene.cameras[cameras[k]];
     if (options.images.empty()) break;
     const film::Image image = make_image(scene, camera, result.films[k], settings, result.passes);
-    for (const std::string& path : options.images) {
-      images.push_back(image_path(path, camera.name, cameras.size() > 1));
+    for (std::size_t output = 0; output < names.count(); ++output) {
+      images.push_back(names.path(output, k, 0));
       film::write_image(images.back(), image);
     }
   }
@@ -152,11 +151,10 @@ void run(RenderOptions& options) {
                format_bytes(static_cast<double>(writer->bytes_written())));
   }
   for (const std::string& image : images) fmt::print("{}\n", image);
-  std::fflush(stdout);
   if (result.non_finite != 0 && !options.common.quiet) {
-    fmt::print(stderr,
-               "note: {} paths are not finite; pictures leave them out, the dump keeps them\n",
-               result.non_finite);
+    core::say(
+        fmt::format("note: {} paths are not finite; pictures leave them out, the dump keeps them",
+                    result.non_finite));
   }
   if (!options.common.json.empty()) {
     nlohmann::ordered_json figures = {{"scene", scene.name},
@@ -174,7 +172,7 @@ void run(RenderOptions& options) {
       figures["file"] = options.output;
       figures["bytes"] = writer->bytes_written();
     }
-    core::write_text_file(options.common.json, figures.dump(2) + "\n");
+    core::write_json_file(options.common.json, figures);
   }
   if (result.interrupted) {
     const std::string kept = writer ? options.output + " keeps" : "the pictures keep";

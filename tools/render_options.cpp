@@ -223,12 +223,8 @@ void check_outputs(const RenderOptions& options) {
                                         ": a path-vertex buffer is named .pvb; --image "
                                         "writes pictures");
     }
-    const core::OutputFile probe(options.output);
   }
   for (const std::string& image : options.images) film::check_image_path(image);
-  if (!options.common.json.empty()) {
-    const core::OutputFile probe(options.common.json);
-  }
   (void)render::record_channels(options.settings.channels);
 }
 

@@ -3,7 +3,10 @@
 
 namespace psf::core {
 
-// From now on SIGINT and SIGTERM set a flag; a second one ends the program at once.
+// From now on SIGINT, SIGTERM, SIGHUP and SIGXCPU set a flag. A second one ends the program at once
+// with exit code 130 (SIGXCPU comes every second and does not), and what is unfinished is removed;
+// so it is, too, where another signal ends it. A write beyond the limit of file sizes and one into
+// a closed pipe fail and end nothing (SIGXFSZ, SIGPIPE).
 void watch_interrupts();
 [[nodiscard]] bool interrupted() noexcept;
 // Throws Error{interrupted} where the flag is set; `what` says what is left behind.

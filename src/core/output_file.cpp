@@ -2,7 +2,9 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -12,40 +14,76 @@
 
 namespace psf::core {
 namespace fs = std::filesystem;
+namespace {
 
-OutputFile::OutputFile(const std::string& path) : path_(path) {
-  const fs::path target(path);
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  if (!target.has_filename() || fs::is_directory(target)) {
-    throw Error(ErrorCode::io, path + ": is a folder, a file name is needed");
+[[noreturn]] void refuse(const std::string& path, const std::string& why) {
+  throw Error(ErrorCode::io, path + ": " + why);
+}
+
+// Of a temporary in `folder` for the file `name`: hidden, with its extension, the stem cut where
+// the whole would be too long.
+std::string temporary_name(const fs::path& folder, const fs::path& name) {
+  const std::string end = "." + std::to_string(getpid()) + ".partial" + name.extension().string();
+  const long limit = ::pathconf(folder.c_str(), _PC_NAME_MAX);
+  const auto most = static_cast<std::size_t>(limit > 0 ? limit : NAME_MAX);
+  const std::size_t room = most - std::min(most, end.size() + 1);
+  return "." + name.stem().string().substr(0, room) + end;
+}
+
+}  // namespace
+
+std::string followed(const std::string& path) {
+  constexpr int kMostLinks = 40;  // as Linux has it
+  fs::path target(path);
+  std::error_code error;
+  for (int k = 0; k < kMostLinks && fs::is_symlink(fs::symlink_status(target, error)); ++k) {
+    target = target.parent_path() / fs::read_symlink(target, error);
   }
-  if (!fs::is_directory(folder)) {
-    throw Error(ErrorCode::io,
-                path + ": the folder " + folder.string() + " does not exist, create it first");
-  }
+  return target.string();
+}
+
+OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
   // A device or a pipe takes bytes as they come; renaming would put a plain file in its place.
-  if (fs::exists(target) && !fs::is_regular_file(target)) {
+  if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) {
     temporary_ = path_;
     return;
   }
-  temporary_ = (folder / ("." + target.stem().string() + "." + std::to_string(getpid()) +
-                          ".partial" + target.extension().string()))
-                   .string();
-  if (!std::ofstream(temporary_, std::ios::binary)) {
-    throw Error(ErrorCode::io, path + ": cannot write here: " + std::strerror(errno));
+  target_ = followed(path);
+  const fs::path target(target_);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  if (!target.has_filename() || fs::is_directory(status)) {
+    refuse(path, "is a folder, a file name is needed");
   }
-}
-
-OutputFile::~OutputFile() {
-  if (!committed_ && temporary_ != path_) std::remove(temporary_.c_str());
+  const fs::file_status around = fs::status(folder, error);
+  if (around.type() == fs::file_type::not_found) {
+    refuse(path, "the folder " + folder.string() + " does not exist, create it first");
+  }
+  if (!fs::is_directory(around)) {
+    refuse(path, "cannot write here: " +
+                     (fs::exists(around) ? folder.string() + " is no folder" : error.message()));
+  }
+  // Renaming asks the folder alone: a file that its owner protects would go all the same.
+  if (fs::exists(status) && ::access(target_.c_str(), W_OK) != 0) {
+    refuse(path, std::string("cannot write: ") + std::strerror(errno));
+  }
+  if (target.filename().string().size() > static_cast<std::size_t>(NAME_MAX)) {
+    refuse(path, std::string("cannot write: ") + std::strerror(ENAMETOOLONG));
+  }
+  temporary_ = (folder / temporary_name(folder, target.filename())).string();
+  unfinished_.emplace(temporary_);
+  if (!std::ofstream(temporary_, std::ios::binary)) {
+    refuse(path, std::string("cannot write here: ") + std::strerror(errno));
+  }
 }
 
 void OutputFile::commit() {
-  if (temporary_ != path_ && std::rename(temporary_.c_str(), path_.c_str()) != 0) {
-    throw Error(ErrorCode::io,
-                path_ + ": cannot put the finished file in place: " + std::strerror(errno));
+  if (!unfinished_) return;
+  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) {
+    refuse(path_, std::string("cannot put the finished file in place: ") + std::strerror(errno));
   }
-  committed_ = true;
+  unfinished_->keep();
 }
 
 void write_text_file(const std::string& path, const std::string& text) {
@@ -54,7 +92,7 @@ void write_text_file(const std::string& path, const std::string& text) {
     std::ofstream out(file.temporary_path(), std::ios::binary);
     out << text;
     out.close();
-    if (!out) throw Error(ErrorCode::io, path + ": cannot write: " + std::strerror(errno));
+    if (!out) refuse(path, std::string("cannot write: ") + std::strerror(errno));
   }
   file.commit();
 }

@@ -10,6 +10,13 @@ namespace psf::core {
 namespace {
 constexpr double kTerminalInterval = 0.1;  // seconds between two drawings of the bar
 constexpr double kLogInterval = 10;        // seconds between two lines where stderr is no terminal
+
+// {fmt} would throw where stderr takes no more.
+void show(const std::string& text) {
+  static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
+  static_cast<void>(std::fflush(stderr));
+}
+
 }  // namespace
 
 Progress::Progress(std::string what, std::size_t total, bool quiet)
@@ -40,16 +47,15 @@ void Progress::advance(std::size_t done, const std::string& note) {
   if (terminal_) {
     constexpr int kWidth = 30;
     const int filled = static_cast<int>(std::lround(fraction * kWidth));
-    fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3.0f}%  {}{}{}\033[K", what_, "", filled, "",
-               kWidth - filled, 100 * fraction, note, separator, left);
+    show(fmt::format("\r{} [{:#<{}}{:.<{}}] {:3.0f}%  {}{}{}\033[K", what_, "", filled, "",
+                     kWidth - filled, 100 * fraction, note, separator, left));
   } else {
-    fmt::print(stderr, "{} {:.0f}%  {}{}{}\n", what_, 100 * fraction, note, separator, left);
+    show(fmt::format("{} {:.0f}%  {}{}{}\n", what_, 100 * fraction, note, separator, left));
   }
-  std::fflush(stderr);
 }
 
 void Progress::finish() {
-  if (shown_ && terminal_) fmt::print(stderr, "\n");
+  if (shown_ && terminal_) show("\n");
   shown_ = false;
   quiet_ = true;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/json_text.h"
 #include "formats/error.h"
 
 namespace psf::render {
@@ -28,7 +29,7 @@ Json unlisted_settings(const RenderSettings& settings) {
 
 // A value as a message has it; a long one says nothing.
 std::string brief(const Json& value) {
-  const std::string text = value.is_null() ? "not given" : value.dump();
+  const std::string text = value.is_null() ? "not given" : core::json_text(value);
   return text.size() <= 60 ? text : "another one";
 }
 
@@ -54,7 +55,7 @@ std::string resume_state(const Done& done, const RenderSettings& settings) {
                    {"non_finite", done.non_finite},
                    {"seconds", done.seconds},
                    {"settings", unlisted_settings(settings)}};
-  return state.dump();
+  return core::json_text(state);
 }
 
 Done resume_point(const formats::Writer& writer, const formats::Head& head,

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "core/error.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
 
 namespace psf::study {
@@ -55,7 +56,11 @@ bool SweepFile::has(const filter::Parameters& parameters) const {
 }
 
 std::string SweepFile::next_id() const {
-  return fmt::format("{:04}", json_["rows"].size() + 1);
+  return id(json_["rows"].size());
+}
+
+std::string SweepFile::id(std::size_t rows) {
+  return fmt::format("{:04}", rows + 1);
 }
 
 void SweepFile::add(const SweepRow& row, std::span<const Metric> metrics,
@@ -86,7 +91,7 @@ void SweepFile::set_reference_picture(const std::string& picture) {
 
 void SweepFile::write() const {
   core::write_text_file((std::filesystem::path(folder_) / "sweep.csv").string(), csv());
-  core::write_text_file(json_path(folder_), json_.dump(1) + "\n");
+  core::write_json_file(json_path(folder_), json_, 1);
 }
 
 std::string SweepFile::csv() const {

@@ -24,6 +24,8 @@ class SweepFile {
   [[nodiscard]] bool has_unfiltered() const { return !json_["unfiltered"].is_null(); }
   // "0001", of the next row.
   [[nodiscard]] std::string next_id() const;
+  // Of the row that comes behind so many others.
+  [[nodiscard]] static std::string id(std::size_t rows);
 
   // `picture`: a name in the folder, or empty.
   void add(const SweepRow& row, std::span<const Metric> metrics, const std::string& picture);

@@ -139,7 +139,7 @@ TEST_CASE("every mistake is one line, has its exit code and leaves nothing behin
       {"psf-render SAMPLES/cornell.json --size 16x16 --seed 1 -o FOLDER/good.pvb --resume --quiet",
        3, "it was rendered with seed 0, now it is 1"},
       {"psf recover FOLDER/good.pvb", 2, "OUT is required"},
-      {"psf recover FOLDER/good.pvb FOLDER/good.pvb", 2, "the damaged file itself"},
+      {"psf recover FOLDER/good.pvb FOLDER/good.pvb", 2, "would overwrite the input"},
       {"psf recover FOLDER/text.pvb FOLDER/x.pvb", 3, "nothing can be saved"},
       {"psf recover FOLDER/nowhere.pvb FOLDER/x.pvb", 4, "nowhere.pvb: "},
       {"psf recover FOLDER/good.pvb FOLDER/nowhere/x.pvb", 4, "nowhere/x.pvb"},

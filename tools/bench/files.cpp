@@ -13,6 +13,7 @@
 #include "bench/write_rows.h"
 #include "cli.h"
 #include "core/interrupt.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "formats/error.h"
@@ -106,7 +107,7 @@ void run(const FilesOptions& options) {
              core::thread_count(), core::thread_count() == 1 ? "" : "s");
   print_table(rows);
   if (!options.common.json.empty()) {
-    core::write_text_file(options.common.json, to_json(options, dump, rows).dump(2) + "\n");
+    core::write_json_file(options.common.json, to_json(options, dump, rows));
   }
   if (options.check) require_targets(rows);
 }

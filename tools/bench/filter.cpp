@@ -14,6 +14,7 @@
 #include "cli.h"
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -218,7 +219,7 @@ void run(const FilterOptions& options) {
   bench.measure();
   bench.print();
   if (!options.common.json.empty()) {
-    core::write_text_file(options.common.json, bench.json().dump(2) + "\n");
+    core::write_json_file(options.common.json, bench.json());
   }
   bench.check();
 }

@@ -12,6 +12,7 @@
 #include "bench/rows.h"
 #include "bench/turns.h"
 #include "cli.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "filter/parameters_text.h"
@@ -95,7 +96,7 @@ void run(const SweepOptions& options) {
                                          {"dump", options.input},
                                          {"repeat", options.repeat},
                                          {"rows", to_json(rows)}};
-    core::write_text_file(options.common.json, json.dump(2) + "\n");
+    core::write_json_file(options.common.json, json);
   }
   if (options.check) require_targets(rows);
 }

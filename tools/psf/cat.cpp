@@ -7,9 +7,11 @@
 
 #include "cli.h"
 #include "core/interrupt.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/standard_streams.h"
 #include "formats/concatenate.h"
 #include "pass_range.h"
 #include "text.h"
@@ -39,9 +41,12 @@ formats::ConcatenateOptions to_library(const CatOptions& options) {
 
 void run(const CatOptions& options) {
   const core::ThreadLimit threads(options.common.threads);
+  // It may replace one of its inputs: until it is whole it has another name.
+  check_files({}, {options.output, options.common.json});
+  check_files(options.inputs, {options.common.json});
   std::unique_ptr<core::Progress> progress;
   const formats::ConcatenateReport report = formats::concatenate(
-      options.inputs, options.output, to_library(options),
+      options.inputs, core::followed(options.output), to_library(options),
       [&](std::uint64_t done, std::uint64_t total) {
         core::throw_if_interrupted("nothing is written");
         if (!progress) {
@@ -51,10 +56,10 @@ void run(const CatOptions& options) {
       });
   if (progress) progress->finish();
   if (!options.common.quiet) {
-    for (const std::string& note : report.notes) fmt::print(stderr, "note: {}\n", note);
+    for (const std::string& note : report.notes) core::say("note: " + note);
     if (report.overflows > 0) {
-      fmt::print(stderr, "note: {} too large for f16 and became infinite\n",
-                 counted(report.overflows, "value was", "values were"));
+      core::say(fmt::format("note: {} too large for f16 and became infinite",
+                            counted(report.overflows, "value was", "values were")));
     }
   }
   fmt::print("{}: {} in {}, {} bytes\n", options.output,
@@ -65,7 +70,7 @@ void run(const CatOptions& options) {
         {"inputs", options.inputs}, {"output", options.output}, {"records", report.records},
         {"passes", report.passes},  {"bytes", report.bytes},    {"overflows", report.overflows},
         {"notes", report.notes}};
-    core::write_text_file(options.common.json, figures.dump(2) + "\n");
+    core::write_json_file(options.common.json, figures);
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include "cli.h"
 #include "compare_report.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "film/image.h"
@@ -79,7 +80,9 @@ void check_bounds(const CompareOptions& options, study::Metric metric) {
 
 void check_outputs(const CompareOptions& options) {
   for (const std::string& path : options.error_pictures) film::check_image_path(path);
-  if (!options.common.json.empty()) core::OutputFile probe(options.common.json);
+  std::vector<std::string> outputs = options.error_pictures;
+  outputs.push_back(options.common.json);
+  check_files({options.picture, options.reference}, outputs);
 }
 
 void write_error_pictures(const CompareOptions& options, study::Metric metric,
@@ -164,7 +167,7 @@ void run(const CompareOptions& options) {
   print_left_out(report);
   write_error_pictures(options, report.first, errors);
   if (!options.common.json.empty()) {
-    core::write_text_file(options.common.json, to_json(report).dump(2) + "\n");
+    core::write_json_file(options.common.json, to_json(report));
   }
   judge(options, report);
 }

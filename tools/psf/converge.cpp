@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -12,9 +13,11 @@
 
 #include "cli.h"
 #include "converge_report.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/unfinished.h"
 #include "formats/error.h"
 #include "parameter_lists.h"
 #include "study/analytic.h"
@@ -70,7 +73,7 @@ void keep_progress(study::Convergence& convergence, core::Progress& progress) {
 void write(const std::string& folder, const study::ConvergeReport& report) {
   const std::filesystem::path path(folder);
   core::write_text_file((path / "converge.csv").string(), study::to_csv(report));
-  core::write_text_file((path / "converge.json").string(), study::to_json(report).dump(1) + "\n");
+  core::write_json_file((path / "converge.json").string(), study::to_json(report), 1);
 }
 
 void refuse_to_overwrite(const std::string& folder) {
@@ -91,7 +94,6 @@ void run_dumps(const ConvergeOptions& options) {
   study::ConvergeReport report;
   report.version = kVersion;
   if (!options.render_figures.empty()) report.time = read_render_time(options.render_figures);
-  if (!options.common.json.empty()) core::OutputFile probe(options.common.json);
   const std::span<const study::Metric> measured =
       options.all_metrics ? std::span<const study::Metric>(study::kAllMetrics)
                           : std::span<const study::Metric>(study::kPixelMetrics);
@@ -112,12 +114,18 @@ void run_dumps(const ConvergeOptions& options) {
   convergence.camera = folder.camera();
   convergence.with_times = !options.no_times;
   convergence.max_memory = options.study.max_memory;
+  std::vector<std::string> inputs = options.inputs, names = {"converge.json", "converge.csv"};
+  inputs.insert(inputs.end(), options.render_figures.begin(), options.render_figures.end());
+  for (std::size_t series = 0; options.study.pictures && series <= sets.size(); ++series) {
+    for (const std::uint64_t n : convergence.n) names.push_back(study::picture_name(series, n));
+  }
+  folder.make(std::move(inputs), names, options.common.json);
   core::Progress progress("converge", kProgressSteps, options.common.quiet);
   keep_progress(convergence, progress);
   if (options.study.pictures) {
     report.with_pictures = true;
     report.reference["picture"] = "reference.exr";
-    folder.write("reference.exr", folder.reference_picture(), {});
+    folder.write_reference();
     convergence.on_picture = [&](std::optional<std::size_t> set, std::uint64_t n,
                                  const std::vector<Rgb>& picture) {
       folder.write(study::picture_name(set ? *set + 1 : 0, n), picture,
@@ -135,7 +143,7 @@ void run_dumps(const ConvergeOptions& options) {
   fmt::print("wrote {} and converge.csv\n",
              (std::filesystem::path(folder.path()) / "converge.json").string());
   if (!options.common.json.empty()) {
-    core::write_text_file(options.common.json, study::to_json(report).dump(1) + "\n");
+    core::write_json_file(options.common.json, study::to_json(report), 1);
   }
 }
 
@@ -173,22 +181,25 @@ std::vector<study::SlopeCheck> check_slopes(const study::Analytic& scene,
   return checks;
 }
 
-// Dumps of a scene that are there as long as they are needed, whatever happens.
-struct Replicates {
-  std::vector<std::string> dumps;
-
-  Replicates(const study::Analytic& scene, const std::filesystem::path& folder) {
+// Dumps of a scene in a folder of their own, there as long as they are needed, whatever happens.
+class Replicates {
+ public:
+  Replicates(const study::Analytic& scene, const std::filesystem::path& around)
+      : folder_((around / fmt::format(".{}.partial", getpid())).string()), own_folder_(folder_) {
+    std::filesystem::create_directory(folder_);
     for (std::size_t r = 0; r < kReplicates; ++r) {
-      dumps.push_back((folder / fmt::format("{}.pvb", r)).string());
-      scene.write_dump(dumps.back(), r + 1, kPasses);
+      dumps_.push_back(fmt::format("{}/{}.pvb", folder_, r));
+      own_dumps_.emplace_back(dumps_.back());
+      scene.write_dump(dumps_.back(), r + 1, kPasses);
     }
   }
-  ~Replicates() {
-    std::error_code ignored;
-    for (const std::string& path : dumps) std::filesystem::remove(path, ignored);
-  }
-  Replicates(const Replicates&) = delete;
-  Replicates& operator=(const Replicates&) = delete;
+  [[nodiscard]] const std::vector<std::string>& dumps() const { return dumps_; }
+
+ private:
+  std::string folder_;
+  std::vector<std::string> dumps_;
+  core::Unfinished own_folder_;
+  std::deque<core::Unfinished> own_dumps_;
 };
 
 bool run_analytic(const ConvergeOptions& options, study::AnalyticScene which,
@@ -205,7 +216,7 @@ bool run_analytic(const ConvergeOptions& options, study::AnalyticScene which,
     largest = std::max(largest, set.radius.r0);
   }
   const Replicates replicates(scene, folder);
-  const std::vector<std::string>& dumps = replicates.dumps;
+  const std::vector<std::string>& dumps = replicates.dumps();
   const std::vector<Rgb> picture = scene.reference();
   study::MetricOptions metric_options;
   const study::Reference reference(picture, study::Analytic::kSize, metric_options,

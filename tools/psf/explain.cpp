@@ -9,6 +9,7 @@
 
 #include "cli.h"
 #include "core/error.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -73,8 +74,7 @@ study::ExplainRequest request_of(const ExplainOptions& options) {
 void run(const ExplainOptions& options) {
   const core::ThreadLimit threads(options.common.threads);
   study::ExplainRequest request = request_of(options);
-  if (!options.common.json.empty()) core::OutputFile probe(options.common.json);
-  if (!options.ply.empty()) core::OutputFile probe(options.ply);
+  check_files({options.input}, {options.common.json, options.ply});
   const study::Dump dump(options.input);
   request.camera = camera_of(options, dump);
 
@@ -91,7 +91,7 @@ void run(const ExplainOptions& options) {
                              options.all};
   fmt::print("{}{}", explain_overview(report), explain_tables(report));
   if (!options.common.json.empty()) {
-    core::write_text_file(options.common.json, explain_json(report).dump() + "\n");
+    core::write_json_file(options.common.json, explain_json(report), -1);
   }
   if (!options.ply.empty()) static_cast<void>(study::write_ply(explanation, whence, options.ply));
 }

@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "cli.h"
+#include "core/apart.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -109,7 +111,8 @@ void run(const ExportOptions& options) {
   selection.channels = options.channels;
   selection.passes = parse_passes(options.passes);
   selection.every = options.every;
-  if (!options.common.json.empty()) core::OutputFile probe(options.common.json);
+  core::check_apart(std::vector{options.input}, std::vector{options.output, options.common.json});
+  check_files({options.input}, {format == "npy" ? "" : options.output, options.common.json});
 
   const formats::Reader reader(options.input);
   core::Progress bar("export", kProgressSteps, options.common.quiet);
@@ -126,8 +129,7 @@ void run(const ExportOptions& options) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   print(options, format, outcome);
   if (!options.common.json.empty()) {
-    core::write_text_file(options.common.json,
-                          to_json(options, format, outcome, seconds).dump(2) + "\n");
+    core::write_json_file(options.common.json, to_json(options, format, outcome, seconds));
   }
 }
 

@@ -11,12 +11,15 @@
 #include "cli.h"
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/seconds.h"
+#include "core/standard_streams.h"
 #include "filter_options.h"
 #include "filter_report.h"
+#include "formats/appender.h"
 #include "pass_range.h"
 #include "picture_names.h"
 #include "tuned.h"
@@ -50,15 +53,24 @@ std::vector<std::pair<std::string, std::string>> attributes_of(
   return attributes;
 }
 
+std::vector<std::string> camera_names(const study::Dump& dump) {
+  std::vector<std::string> names;
+  for (const formats::CameraInfo& camera : dump.metadata().cameras) names.push_back(camera.name);
+  return names;
+}
+
 // Writes the pictures of a run, every camera under every name.
 class PictureWriter {
  public:
   PictureWriter(const FilterOptions& options, const study::Dump& dump, const study::FilterRun& run)
-      : names_(options.outputs, dump.metadata().cameras),
+      : names_(options.outputs, camera_names(dump)),
         attributes_(attributes_of(dump, run.parameters)),
         cameras_(dump.metadata().cameras),
         first_(run.passes.first) {
-    names_.check(run.snapshots);
+    std::vector<std::string> files = names_.all(run.snapshots);
+    for (const std::string& path : files) film::check_image_path(path);
+    files.push_back(options.common.json);
+    check_files({options.input, options.tuned}, files);
   }
 
   // Of the first `passes` passes; `snapshot`: for the name, 0 for the final ones. Returns the
@@ -123,8 +135,8 @@ std::vector<std::string> filter_growing(study::Dump& dump, const study::FilterRu
   const auto on_pictures = [&](const study::FilterOutcome& now) {
     written = writer.write(0, now.passes, now.pictures);
     if (!quiet) {
-      fmt::print(stderr, "{}: {}\n", counted(now.passes, "pass", "passes"),
-                 fmt::join(written, ", "));
+      core::say(
+          fmt::format("{}: {}", counted(now.passes, "pass", "passes"), fmt::join(written, ", ")));
     }
     last_seen = Clock::now();
     told = false;
@@ -135,10 +147,10 @@ std::vector<std::string> filter_growing(study::Dump& dump, const study::FilterRu
     if (told || quiet || seconds_since(last_seen) < kPatience) return;
     told = !dump.reader().is_being_written();
     if (told) {
-      fmt::print(stderr,
-                 "note: {}: nobody is writing it and it is not closed; resume its writer, or "
-                 "stop here with ^C\n",
-                 dump.reader().path());
+      core::say(fmt::format(
+          "note: {}: nobody is writing it and it is not closed; resume its writer, or stop here "
+          "with ^C",
+          dump.reader().path()));
     }
   };
   outcome = study::follow_dump(dump, run, on_pictures, wait);
@@ -147,7 +159,8 @@ std::vector<std::string> filter_growing(study::Dump& dump, const study::FilterRu
 
 // A dump gets its name with its first pass.
 void wait_for_first_pass(const std::string& path) {
-  while (!std::filesystem::exists(path) && std::filesystem::exists(path + ".partial")) {
+  const std::string partial = formats::Appender::partial_path(path);
+  while (!std::filesystem::exists(path) && std::filesystem::exists(partial)) {
     core::throw_if_interrupted("no pass was committed yet");
     std::this_thread::sleep_for(kBetweenLooks);
   }
@@ -170,7 +183,6 @@ void run(const FilterOptions& options) {
   run.snapshots =
       snapshots_of(options.snapshots, last > run.passes.first ? last - run.passes.first : 0);
   PictureWriter writer(options, dump, run);
-  if (!options.common.json.empty()) core::OutputFile probe(options.common.json);
 
   FilterReport report;
   report.input = options.input;
@@ -185,7 +197,7 @@ void run(const FilterOptions& options) {
   report.peak = study::peak_memory();
   print_report(report);
   if (!options.common.json.empty()) {
-    core::write_text_file(options.common.json, to_json(report).dump(2) + "\n");
+    core::write_json_file(options.common.json, to_json(report));
   }
 }
 

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "cli.h"
+#include "core/interrupt.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -166,8 +168,10 @@ Statistics read_statistics(const formats::Reader& reader, bool quiet) {
   Statistics statistics;
   core::Progress progress("statistics", channels * chunks, quiet);
   for (std::size_t k = 0; k < channels; ++k) {
-    statistics.push_back(formats::channel_statistics(
-        reader, k, [&](std::size_t done) { progress.advance(k * chunks + done); }));
+    statistics.push_back(formats::channel_statistics(reader, k, [&](std::size_t done) {
+      core::throw_if_interrupted("not all was read");
+      progress.advance(k * chunks + done);
+    }));
   }
   progress.finish();
   return statistics;
@@ -270,6 +274,7 @@ formats::Metadata metadata_of(const formats::Reader& reader) {
 
 void run(const InfoOptions& options) {
   const core::ThreadLimit threads(options.common.threads);
+  check_files({options.input}, {options.common.json});
   const formats::Reader reader(options.input);
   const formats::Metadata metadata = metadata_of(reader);
   const std::vector<formats::ChannelSize> sizes = channel_sizes(reader);
@@ -289,7 +294,7 @@ void run(const InfoOptions& options) {
   if (!options.common.json.empty()) {
     nlohmann::ordered_json json = to_json(reader, sizes, statistics);
     if (!noise.of.empty()) json["noise"] = noise_json(noise.of, metadata.cameras);
-    core::write_text_file(options.common.json, json.dump(2) + "\n");
+    core::write_json_file(options.common.json, json);
   }
 }
 

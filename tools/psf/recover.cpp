@@ -9,6 +9,7 @@
 
 #include "cli.h"
 #include "core/interrupt.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -55,9 +56,11 @@ void print(const RecoverVerb& verb, const formats::RecoverReport& report) {
 
 void run(const RecoverVerb& verb) {
   const core::ThreadLimit threads(verb.common.threads);
+  check_files({verb.input}, {verb.output, verb.common.json});
   std::unique_ptr<core::Progress> progress;
   const formats::RecoverReport report = formats::recover(
-      verb.input, verb.output, verb.options, [&](std::uint64_t done, std::uint64_t total) {
+      verb.input, core::followed(verb.output), verb.options,
+      [&](std::uint64_t done, std::uint64_t total) {
         core::throw_if_interrupted("nothing is written");
         if (!progress) {
           progress = std::make_unique<core::Progress>("recover", total, verb.common.quiet);
@@ -67,9 +70,8 @@ void run(const RecoverVerb& verb) {
   if (progress) progress->finish();
   print(verb, report);
   if (!verb.common.json.empty()) {
-    core::write_text_file(verb.common.json, to_json(verb, report).dump(2) + "\n");
+    core::write_json_file(verb.common.json, to_json(verb, report));
   }
-  std::fflush(stdout);
   if (!report.nothing_lost()) {
     throw Error(ErrorCode::comparison,
                 fmt::format("{}: {} lost; {} holds the rest", verb.input,

@@ -9,12 +9,15 @@
 #include <vector>
 
 #include "cli.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
+#include "core/standard_streams.h"
 #include "text.h"
 #include "verbs.h"
 #include "version.h"
 
 namespace psf::tools {
+namespace fs = std::filesystem;
 namespace {
 
 struct ReportCommand {
@@ -24,15 +27,38 @@ struct ReportCommand {
   CommonOptions common;
 };
 
+// What a study is made of: the report must not take its place.
+void add_files(const fs::path& folder, std::vector<std::string>& files) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const fs::path& path = entry.path();
+    if (path.extension() == ".exr" || path.stem() == "sweep" || path.stem() == "converge") {
+      files.push_back(path.string());
+    }
+  }
+}
+
+std::vector<std::string> files_of(const std::vector<std::string>& folders) {
+  std::vector<std::string> files;
+  for (const std::string& folder : folders) {
+    if (!fs::is_directory(folder)) continue;  // write_report() says so
+    add_files(folder, files);
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+      if (entry.is_directory()) add_files(entry.path(), files);
+    }
+  }
+  return files;
+}
+
 void run(const ReportCommand& command) {
+  check_files(files_of(command.folders), {command.output, command.common.json});
   const study::ReportOutcome outcome =
       study::write_report(command.folders, command.output, command.report);
   fmt::print(
       "{}: {}, {}, {:.1f} MB\n", command.output, counted(outcome.sections, "study", "studies"),
       counted(outcome.pictures, "picture", "pictures"), static_cast<double>(outcome.bytes) / 1e6);
   if (outcome.pictures_left_out > 0 && !command.common.quiet) {
-    fmt::print(stderr, "psf report: note: {} left out, the worst ones; see --max-pictures\n",
-               counted(outcome.pictures_left_out, "picture was", "pictures were"));
+    core::say(fmt::format("note: {} left out, the worst ones; see --max-pictures",
+                          counted(outcome.pictures_left_out, "picture was", "pictures were")));
   }
   if (!command.common.json.empty()) {
     const nlohmann::ordered_json figures = {{"report", command.output},
@@ -40,7 +66,7 @@ void run(const ReportCommand& command) {
                                             {"pictures", outcome.pictures},
                                             {"pictures_left_out", outcome.pictures_left_out},
                                             {"bytes", outcome.bytes}};
-    core::write_text_file(command.common.json, figures.dump(2) + "\n");
+    core::write_json_file(command.common.json, figures);
   }
 }
 

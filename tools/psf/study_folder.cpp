@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include "cli.h"
+#include "core/apart.h"
 #include "film/image.h"
 #include "filter/parameters_text.h"
 #include "formats/error.h"
@@ -68,12 +70,34 @@ StudyFolder::StudyFolder(const StudyOptions& options, const study::Dump& dump)
   reference_ = image.rgb();
   width_ = image.width;
   height_ = image.height;
+}
+
+std::string StudyFolder::file(const std::string& name) const {
+  return (std::filesystem::path(options_.folder) / name).string();
+}
+
+void StudyFolder::make(std::vector<std::string> inputs, const std::vector<std::string>& names,
+                       const std::string& json) const {
+  std::vector<std::string> outputs = {json};
+  for (const std::string& name : names) outputs.push_back(file(name));
   std::error_code error;
+  const bool is_there = options_.pictures && std::filesystem::equivalent(
+                                                 options_.reference, file("reference.exr"), error);
+  if (options_.pictures && !is_there) outputs.push_back(file("reference.exr"));
+  inputs.push_back(options_.reference);
+  core::check_apart(inputs, outputs);
   std::filesystem::create_directories(options_.folder, error);
   if (!std::filesystem::is_directory(options_.folder)) {
     throw Error(ErrorCode::io, fmt::format("{}: cannot be made as a folder: {}; give -o another",
                                            options_.folder, error.message()));
   }
+  check_files({}, {json});
+}
+
+void StudyFolder::write_reference() const {
+  std::error_code error;
+  if (std::filesystem::equivalent(options_.reference, file("reference.exr"), error)) return;
+  write("reference.exr", reference_, {});
 }
 
 void StudyFolder::write(const std::string& name, std::span<const Rgb> picture,
@@ -91,7 +115,7 @@ void StudyFolder::write(const std::string& name, std::span<const Rgb> picture,
       image.attributes.emplace_back("psf:" + option, value);
     }
   }
-  film::write_exr((std::filesystem::path(options_.folder) / name).string(), image);
+  film::write_exr(file(name), image);
 }
 
 }  // namespace psf::tools

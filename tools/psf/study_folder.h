@@ -30,9 +30,14 @@ void add_study_options(CLI::App& command, StudyOptions& options, bool required);
 
 class StudyFolder {
  public:
-  // Reads the reference and makes the folder. Throws Error{usage} for a camera that is not there or
+  // Reads the reference. Throws Error{usage} for a camera that is not there or
   // not named though there are several, Error{bad_input} where the reference has another size.
   StudyFolder(const StudyOptions& options, const study::Dump& dump);
+
+  // The names, in the folder, are apart from the inputs and from --json (check_files()); then it is
+  // made where it is missing.
+  void make(std::vector<std::string> inputs, const std::vector<std::string>& names,
+            const std::string& json) const;
 
   [[nodiscard]] const std::string& path() const { return options_.folder; }
   [[nodiscard]] const study::PassSelection& passes() const { return passes_; }
@@ -42,11 +47,15 @@ class StudyFolder {
   [[nodiscard]] const study::MetricOptions& metric_options() const { return options_.metrics; }
   [[nodiscard]] study::Metric metric() const { return metric_; }
 
+  // "reference.exr", unless the reference is that file; with --pictures one of the names.
+  void write_reference() const;
   // A picture of the reference's size as EXR; with parameters they are its attributes.
   void write(const std::string& name, std::span<const Rgb> picture,
              const std::optional<filter::Parameters>& parameters) const;
 
  private:
+  [[nodiscard]] std::string file(const std::string& name) const;
+
   StudyOptions options_;
   study::PassSelection passes_;
   study::Metric metric_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -92,15 +93,22 @@ void run(const SweepOptions& options) {
        study::describe_reference(options.study.reference, folder.reference_picture()),
        study::describe_metrics(study::kAllMetrics, folder.metric_options())},
       options.resume);
-  if (!options.common.json.empty()) core::OutputFile probe(options.common.json);
   std::vector<filter::Parameters> missing;
   for (const filter::Parameters& set : asked) {
     if (!file.has(set)) missing.push_back(set);
   }
+  // Rows are numbered in the order in which they are done.
+  const std::size_t rows = file.json()["rows"].size();
+  std::vector<std::string> names = {"sweep.json", "sweep.csv"};
+  for (std::size_t k = 0; options.study.pictures && k < missing.size(); ++k) {
+    names.push_back(study::SweepFile::id(rows + k) + ".exr");
+  }
+  if (options.study.pictures && !file.has_unfiltered()) names.emplace_back("unfiltered.exr");
+  folder.make({options.input}, names, options.common.json);
   const study::Reference reference(folder.reference_picture(), folder.width(),
                                    folder.metric_options());
   if (options.study.pictures) {
-    folder.write("reference.exr", folder.reference_picture(), {});
+    folder.write_reference();
     file.set_reference_picture("reference.exr");
   }
 
@@ -136,7 +144,7 @@ void run(const SweepOptions& options) {
              counted(missing.size(), "row", "rows"), asked.size() - missing.size(),
              (std::filesystem::path(folder.path()) / "sweep.json").string());
   if (!options.common.json.empty()) {
-    core::write_text_file(options.common.json, file.json().dump(1) + "\n");
+    core::write_json_file(options.common.json, file.json(), 1);
   }
 }
 

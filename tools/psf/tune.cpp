@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cli.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -129,7 +130,7 @@ void run(const TuneOptions& options) {
   tune.camera = find_camera(dump, options.camera);
   tune.epsilon = options.epsilon;
   tune.max_memory = options.max_memory;
-  if (!options.common.json.empty()) core::OutputFile probe(options.common.json);
+  check_files({options.input}, {options.common.json});
   core::Progress progress("tune", kProgressSteps, options.common.quiet);
   tune.on_progress = [&progress](std::uint64_t done, std::uint64_t total) {
     progress.advance(static_cast<std::size_t>(kProgressSteps * static_cast<double>(done) /
@@ -154,7 +155,7 @@ void run(const TuneOptions& options) {
                             {"alike", alike(tuning)},
                             {"best", to_json(tuning.rows[tuning.best])},
                             {"rows", rows}};
-  core::write_text_file(options.common.json, json.dump(1) + "\n");
+  core::write_json_file(options.common.json, json, 1);
   fmt::print("psf filter --tuned {} takes the choice\n", options.common.json);
 }
 

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli.h"
+#include "core/interrupt.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -40,9 +42,11 @@ nlohmann::ordered_json to_json(const std::string& path, const formats::CheckRepo
 
 void run(const VerifyOptions& options) {
   const core::ThreadLimit threads(options.common.threads);
+  check_files({options.input}, {options.common.json});
   std::unique_ptr<core::Progress> progress;
   const formats::CheckReport report =
       formats::check(options.input, [&](std::uint64_t done, std::uint64_t total) {
+        core::throw_if_interrupted("not all was checked");
         if (!progress) {
           progress = std::make_unique<core::Progress>("verify", total, options.common.quiet);
         }
@@ -52,14 +56,13 @@ void run(const VerifyOptions& options) {
 
   for (const formats::Fault& fault : report.faults) fmt::print("{}\n", fault.text());
   if (!options.common.json.empty()) {
-    core::write_text_file(options.common.json, to_json(options.input, report).dump(2) + "\n");
+    core::write_json_file(options.common.json, to_json(options.input, report));
   }
   const std::string tail = report.uncommitted_bytes == 0
                                ? ""
                                : fmt::format("; {} bytes behind the last commit are not committed",
                                              with_commas(report.uncommitted_bytes));
   if (!report.faults.empty()) {
-    std::fflush(stdout);
     throw Error(ErrorCode::comparison,
                 fmt::format("{}: {} in {}{}; 'psf recover' saves what is whole", options.input,
                             counted(report.faults.size(), "fault", "faults"),

@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/json_text.h"
 #include "core/output_file.h"
 #include "film/image.h"
 #include "study/report/report_assets.h"
@@ -26,7 +27,7 @@ namespace {
 // Inside a script element only "<" can end it or open a comment.
 std::string json_for_script(const Json& json) {
   std::string text;
-  for (const char c : json.dump()) {
+  for (const char c : core::json_text(json)) {
     if (c == '<') {
       text += "\\u003c";
     } else {

@@ -11,21 +11,17 @@
 #include <string>
 #include <vector>
 
-#include "film/image.h"
-#include "formats/metadata.h"
-
 namespace psf::tools {
 
 // Where pictures go: the names given, with the camera's where there are several, and the passes of
 // a snapshot.
 class PictureNames {
  public:
-  PictureNames(const std::vector<std::string>& names,
-               const std::vector<formats::CameraInfo>& cameras)
+  PictureNames(const std::vector<std::string>& names, const std::vector<std::string>& cameras)
       : names_(names) {
     std::set<std::string> taken;
-    for (const formats::CameraInfo& camera : cameras) {
-      std::string name = camera.name.empty() ? "camera" : camera.name;
+    for (std::string name : cameras) {
+      if (name.empty()) name = "camera";
       std::replace_if(
           name.begin(), name.end(),
           [](unsigned char c) { return c < 0x80 && std::isalnum(c) == 0 && c != '-'; }, '_');
@@ -44,14 +40,16 @@ class PictureNames {
             (name.stem().string() + cameras_[camera] + suffix + name.extension().string()))
         .string();
   }
-  void check(const std::vector<std::uint64_t>& snapshots) const {
+  // Of a run with these snapshots.
+  [[nodiscard]] std::vector<std::string> all(const std::vector<std::uint64_t>& snapshots) const {
+    std::vector<std::string> files;
     for (std::size_t output = 0; output < names_.size(); ++output) {
       for (std::size_t camera = 0; camera < cameras_.size(); ++camera) {
-        film::check_image_path(path(output, camera, 0));
-        for (const std::uint64_t passes : snapshots)
-          film::check_image_path(path(output, camera, passes));
+        files.push_back(path(output, camera, 0));
+        for (const std::uint64_t passes : snapshots) files.push_back(path(output, camera, passes));
       }
     }
+    return files;
   }
   [[nodiscard]] std::size_t count() const { return names_.size(); }
 

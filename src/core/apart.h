@@ -1,0 +1,14 @@
+// Files that a program reads and files that it writes are told apart before it does anything.
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace psf::core {
+
+// Throws Error{usage} where writing an output would overwrite an input or another output, whatever
+// names lead to it: links of both kinds, "." and "..", standard output that is redirected to it.
+// Empty names are none; devices and pipes may be both. Neither need be there; nothing is opened.
+void check_apart(std::span<const std::string> inputs, std::span<const std::string> outputs);
+
+}  // namespace psf::core

@@ -1,0 +1,22 @@
+// JSON as text: the one place where it is made, because names are bytes and JSON is UTF-8.
+#pragma once
+
+#include <string>
+
+#include "core/output_file.h"
+
+namespace psf::core {
+
+// Of any JSON value of nlohmann's; what is no UTF-8 in a string becomes U+FFFD. `indent` -1: one
+// line.
+template <class Json>
+[[nodiscard]] std::string json_text(const Json& json, int indent = -1) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+template <class Json>
+void write_json_file(const std::string& path, const Json& json, int indent = 2) {
+  write_text_file(path, json_text(json, indent) + "\n");
+}
+
+}  // namespace psf::core
