@@ -12,7 +12,7 @@ constexpr float kLeastCosine = 1e-7f;
 
 Bsdf::Bsdf(const Material& material, const Scene& scene, const Vec2& uv, bool front,
            const CoatAlbedo* coat)
-    : reflectance_(material.reflectance) {
+    : reflectance_(material.reflectance), specular_(material.specular) {
   const bool glass = material.kind == MaterialKind::glass;
   if (!front && !material.two_sided && !glass) return;
   const auto texture = [&](int index) -> const Texture& {
@@ -21,9 +21,12 @@ Bsdf::Bsdf(const Material& material, const Scene& scene, const Vec2& uv, bool fr
   if (material.reflectance_texture != kNone) {
     reflectance_ = reflectance_ * texture(material.reflectance_texture).at(uv);
   }
-  if (material.kind == MaterialKind::conductor || material.kind == MaterialKind::coat) {
+  const bool coated = material.kind == MaterialKind::coat || material.kind == MaterialKind::gloss;
+  if (material.kind == MaterialKind::conductor || coated) {
     roughness_ = material.roughness;
-    metalness_ = material.kind == MaterialKind::conductor ? 1 : material.metalness;
+    metalness_ = material.kind == MaterialKind::conductor ? 1
+                 : material.kind == MaterialKind::coat    ? material.metalness
+                                                          : 0;
     if (material.roughness_metalness_texture != kNone) {
       const Rgb factors = texture(material.roughness_metalness_texture).at(uv);
       roughness_ *= factors.y;
@@ -53,11 +56,17 @@ Bsdf::Bsdf(const Material& material, const Scene& scene, const Vec2& uv, bool fr
       eta_ = material.ior;
       coat_ = coat->row(roughness_);
       break;
+    case MaterialKind::gloss:
+      lobes_ = is_black(reflectance_) ? kGlossy : kDiffuse | kGlossy;
+      coat_ = coat->row(roughness_);
+      edge_ = coat->edge()->row(roughness_);
+      break;
   }
 }
 
 Rgb Bsdf::glossy_fresnel(float cosine) const {
   if (mirror_) return reflectance_;
+  if (edge_.lower != nullptr) return fresnel_schlick(specular_, cosine);
   Rgb f(0, 0, 0);
   if (metalness_ > 0) f = fresnel_schlick(reflectance_, cosine) * metalness_;
   if (metalness_ < 1) {
@@ -67,8 +76,18 @@ Rgb Bsdf::glossy_fresnel(float cosine) const {
   return f;
 }
 
+Rgb Bsdf::gloss_albedo(float white, float edge) const {
+  return specular_ * white + (Rgb(1) - specular_) * edge;
+}
+
 Rgb Bsdf::diffuse(float o_z, float i_z) const {
   if (coat_.lower == nullptr) return reflectance_ * kInvPi;
+  if (edge_.lower != nullptr) {
+    const auto left = [&](float mu) { return Rgb(1) - gloss_albedo(coat_.at(mu), edge_.at(mu)); };
+    Rgb mean = Rgb(1) - gloss_albedo(coat_.mean, edge_.mean);
+    for (int c = 0; c < 3; ++c) mean[c] = std::max(1e-6f, mean[c]);
+    return reflectance_ * left(o_z) * left(i_z) / mean * kInvPi;
+  }
   const float through = (1 - coat_.at(o_z)) * (1 - coat_.at(i_z)) / std::max(1e-6f, 1 - coat_.mean);
   return reflectance_ * (kInvPi * (1 - metalness_) * through);
 }
@@ -76,9 +95,14 @@ Rgb Bsdf::diffuse(float o_z, float i_z) const {
 float Bsdf::glossy_probability(const Vec3& o) const {
   if (lobes_ != (kDiffuse | kGlossy)) return (lobes_ & kGlossy) != 0 ? 1.0f : 0.0f;
   const float coat = coat_.at(o.z);
-  const float glossy =
+  float glossy =
       (1 - metalness_) * coat + metalness_ * luminance(fresnel_schlick(reflectance_, o.z));
-  const float base = (1 - metalness_) * (1 - coat) * luminance(reflectance_);
+  float base = (1 - metalness_) * (1 - coat) * luminance(reflectance_);
+  if (edge_.lower != nullptr) {
+    const Rgb gloss = gloss_albedo(coat, edge_.at(o.z));
+    glossy = luminance(gloss);
+    base = luminance((Rgb(1) - gloss) * reflectance_);
+  }
   // Neither lobe is ever starved: a path of the rarer one would weigh too much.
   return glossy + base > 0 ? std::clamp(glossy / (glossy + base), 0.05f, 0.95f) : 0.5f;
 }
@@ -88,6 +112,7 @@ Rgb Bsdf::albedo() const {
   if (has_diffuse == has_glossy) {
     if (!has_diffuse) return reflectance_;
     const Rgb f0 = glossy_fresnel(1);
+    if (edge_.lower != nullptr) return f0 + reflectance_ * (Rgb(1) - f0);
     return f0 + reflectance_ * ((1 - metalness_) * (1 - fresnel_dielectric(1, eta_)));
   }
   return has_diffuse ? reflectance_ : glossy_fresnel(1);

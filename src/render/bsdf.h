@@ -31,13 +31,15 @@ struct BsdfSample {
 //             the coat does not reflect on the way in and out, which stands for refraction and all
 //             interreflection between coat and base without the base's colour deepening.
 //             Reciprocal, and E(o) + rho (1 - E(o)) in all.
+// gloss       The same with Schlick's Fresnel, where E is a colour.
 // mirror, glass  perfect; glass refracts with probability 1 - Fresnel.
 // GGX with alpha < kLeastAlpha is perfect too.
 class Bsdf {
  public:
   static constexpr std::uint8_t kDiffuse = 1, kGlossy = 2, kGlass = 4;
 
-  // `coat`: the table of the material's ior, for coats. `front`: the camera is on the outside.
+  // `coat`: the table of the material's ior for coats, Schlick's for gloss. `front`: the camera is
+  // on the outside.
   Bsdf(const Material& material, const Scene& scene, const Vec2& uv, bool front,
        const CoatAlbedo* coat);
 
@@ -69,10 +71,13 @@ class Bsdf {
 
  private:
   [[nodiscard]] Rgb glossy_fresnel(float cosine) const;
+  // E of gloss, from those of a specular reflectance of 1 and of 0.
+  [[nodiscard]] Rgb gloss_albedo(float white, float edge) const;
   [[nodiscard]] Rgb diffuse(float o_z, float i_z) const;
   [[nodiscard]] bool sample_glass(const Vec3& o, float choice, BsdfSample& sample) const;
 
   Rgb reflectance_;  // of the base, of the conductor at normal incidence, of mirror; tint of glass
+  Rgb specular_;     // of gloss
   float roughness_ = 0;  // perceptual, of the glossy lobe
   float alpha_ = 0;
   float metalness_ = 0;  // 1 for conductor
@@ -80,6 +85,7 @@ class Bsdf {
   std::uint8_t lobes_ = 0;
   bool mirror_ = false;     // Fresnel is 1
   CoatAlbedo::Row coat_{};  // lower == null: no coat
+  CoatAlbedo::Row edge_{};  // lower == null: no gloss
 };
 
 }  // namespace psf::render

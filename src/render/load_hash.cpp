@@ -58,6 +58,7 @@ void add(Digest& digest, const Material& m) {
   digest.add(static_cast<int>(m.kind));
   digest.add(m.reflectance);
   digest.add(m.reflectance_texture);
+  if (m.kind == MaterialKind::gloss) digest.add(m.specular);
   digest.add(m.roughness);
   digest.add(m.metalness);
   digest.add(m.roughness_metalness_texture);

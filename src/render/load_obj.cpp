@@ -15,6 +15,8 @@
 namespace psf::render {
 namespace {
 
+constexpr std::string_view kSpace = " \t";
+
 class ObjLoad {
  public:
   ObjLoad(const std::string& path, Scene& scene) : path_(path), scene_(scene), textures_(scene) {}
@@ -42,69 +44,84 @@ class ObjLoad {
   void add_libraries(const ObjFile::Libraries& line) {
     std::string_view rest = line.names;
     std::string_view missing;  // words one after the other that are no file
-    const auto warn_of = [&] {
-      if (missing.empty()) return;
-      warn(line.line, fmt::format("the material library {} cannot be opened", missing));
+    const auto warn_of_missing = [&] {
+      if (!missing.empty())
+        warn(line.line, fmt::format("the material library {} cannot be opened", missing));
       missing = {};
     };
     while (!rest.empty()) {
-      const std::string_view start = rest;
-      std::size_t length = rest.size();
       std::string found;
-      while (length > 0 && (found = find_named(path_, rest.substr(0, length))).empty()) {
-        const std::size_t space = rest.substr(0, length).find_last_of(" \t");
-        length =
-            space == std::string_view::npos ? 0 : rest.substr(0, space).find_last_not_of(" \t") + 1;
-      }
-      if (found.empty()) {
-        length = std::min(rest.find_first_of(" \t"), rest.size());
-        missing =
-            missing.empty()
-                ? rest.substr(0, length)
-                : std::string_view(missing.data(),
-                                   static_cast<std::size_t>(rest.data() + length - missing.data()));
-      } else {
-        warn_of();
+      std::size_t length = longest_file(rest, found);
+      if (length > 0) {
+        warn_of_missing();
         add_library(find_file(path_, found));
+      } else {
+        length = std::min(rest.find_first_of(kSpace), rest.size());
+        const char* const begin = missing.empty() ? rest.data() : missing.data();
+        missing = {begin, static_cast<std::size_t>(rest.data() + length - begin)};
       }
       rest.remove_prefix(length);
-      rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
-      if (rest.size() == start.size()) break;
+      rest.remove_prefix(std::min(rest.find_first_not_of(kSpace), rest.size()));
     }
-    warn_of();
+    warn_of_missing();
+  }
+
+  // Characters of the longest run of words at the front that is a file, 0 for none. Of all the
+  // words, or of a few: each try asks the file system.
+  [[nodiscard]] std::size_t longest_file(std::string_view text, std::string& found) const {
+    constexpr std::size_t kMostWords = 16;
+    std::vector<std::size_t> lengths;
+    for (std::size_t at = 0; at < text.size() && lengths.size() < kMostWords;
+         at = std::min(text.find_first_not_of(kSpace, lengths.back()), text.size())) {
+      lengths.push_back(std::min(text.find_first_of(kSpace, at), text.size()));
+    }
+    if (!lengths.empty() && lengths.back() < text.size()) lengths.push_back(text.size());
+    for (; !lengths.empty(); lengths.pop_back()) {
+      found = find_named(path_, text.substr(0, lengths.back()));
+      if (!found.empty()) return lengths.back();
+    }
+    return 0;
   }
 
   void add_library(const std::string& library) {
     if (!libraries_.insert(library).second) return;
     LeftOut left_out;
-    for (const MtlMaterial& mtl : read_mtl(library, left_out)) {
+    std::size_t doubles = 0;
+    const MtlMaterial* first_double = nullptr;
+    const std::vector<MtlMaterial> materials = read_mtl(library, left_out);
+    for (const MtlMaterial& mtl : materials) {
       // Libraries are searched in their order.
       const auto [entry, is_new] =
           materials_.try_emplace(mtl.name, static_cast<int>(scene_.materials.size()));
-      if (!is_new) {
-        scene_.warnings.push_back(
-            fmt::format("{}:{}: another material is called \"{}\", the first counts", library,
-                        mtl.line, mtl.name));
-        continue;
+      if (is_new) {
+        scene_.materials.push_back(to_material(mtl, library, textures_, left_out));
+      } else if (doubles++ == 0) {
+        first_double = &mtl;
       }
-      scene_.materials.push_back(to_material(mtl, library, textures_, left_out));
     }
     left_out.warn(library, scene_);
+    if (doubles > 0) {
+      scene_.warnings.push_back(
+          fmt::format("{}:{}: another material is called \"{}\", the first counts{}", library,
+                      first_double->line, first_double->name,
+                      doubles > 1 ? fmt::format("; {} more are like that", doubles - 1) : ""));
+    }
   }
 
   int material_of(const ObjPart& part) {
     if (part.material.empty()) return plain_material();
-    auto found = materials_.find(part.material);
-    // A comment may follow the name, but # is in many names.
-    if (found == materials_.end())
-      found = materials_.find(part.material.substr(
-          0, part.material.find_last_not_of(" \t", part.material.find(" #")) + 1));
+    const auto found = materials_.find(part.material);
     if (found != materials_.end()) return found->second;
-    if (std::find(missing_.begin(), missing_.end(), part.material) == missing_.end()) {
-      if (missing_.empty()) missing_line_ = part.line;
-      missing_.push_back(part.material);
-    }
-    return plain_material();
+    // A comment may follow the name, but # is in many names.
+    const std::size_t comment = part.material.find(" #");
+    const auto bare = comment == std::string::npos
+                          ? materials_.end()
+                          : materials_.find(part.material.substr(
+                                0, part.material.find_last_not_of(kSpace, comment) + 1));
+    if (bare != materials_.end()) return bare->second;
+    if (missing_.empty()) missing_line_ = part.line;
+    missing_.push_back(part.material);
+    return materials_[part.material] = plain_material();
   }
 
   // Of faces without a material.

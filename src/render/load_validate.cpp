@@ -70,6 +70,7 @@ class Validation {
     };
     for (int c = 0; c < 3; ++c) {
       unit(material.reflectance[c], "the reflectance");
+      unit(material.specular[c], "the specular reflectance");
       const float emission = material.emission[c];
       if (!(emission >= 0) || !std::isfinite(emission)) {
         say(fmt::format("the emission is {}, expected a finite number >= 0", emission));

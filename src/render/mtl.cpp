@@ -103,11 +103,11 @@ class MtlReader {
       material().map_ke = read_map();
     } else if (std::find(std::begin(kLackedNumbers), std::end(kLackedNumbers), statement) !=
                std::end(kLackedNumbers)) {
-      if (read_number(-kAny, kAny) != 0) left_out_.add(std::string(lines_.statement()));
+      if (read_number(-kAny, kAny) != 0) left_out_.add(lines_.statement());
     } else if (statement == "sharpness") {
       (void)read_number(0, kAny);  // of reflection maps, which are left out by their own names
     } else if (statement != "map_ka") {  // light is simulated, no share of it is ambient
-      left_out_.add(std::string(lines_.statement()));
+      left_out_.add_statement(lines_.statement());
     }
   }
 

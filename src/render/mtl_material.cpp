@@ -59,9 +59,10 @@ void set_reflection(const MtlMaterial& mtl, Material& material, LeftOut& left_ou
   } else if (illum >= 2 && illum <= 9 && !is_black(specular)) {
     const bool sharp = illum == 3 || illum == 5 || illum == 8;
     material.roughness = sharp ? 0 : roughness_of(mtl.ns.value_or(0));
-    material.kind = has_base ? MaterialKind::coat
+    material.kind = has_base ? MaterialKind::gloss
                     : sharp  ? MaterialKind::mirror
                              : MaterialKind::conductor;
+    material.specular = specular;
     if (!has_base) material.reflectance = specular;
   }
 }
@@ -83,7 +84,8 @@ Material to_material(const MtlMaterial& mtl, const std::string& path, TextureTab
     return textures.load(path, found.empty() ? map.file : found, ColorSpace::srgb,
                          fmt::format("{}:{}: material {}", path, map.line, mtl.name));
   };
-  if (material.kind == MaterialKind::diffuse || material.kind == MaterialKind::coat)
+  if (material.kind == MaterialKind::diffuse || material.kind == MaterialKind::coat ||
+      material.kind == MaterialKind::gloss)
     material.reflectance_texture = load(mtl.map_kd);
   material.emission_texture = load(mtl.map_ke);
   return material;

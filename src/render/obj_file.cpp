@@ -58,7 +58,7 @@ class ObjReader {
       smooth_ = !group.empty() && group != "off" && group != "0";
     } else {
       // Free-form curves and surfaces, points, lines, display attributes; or no OBJ at all.
-      left_out_.add(std::string(statement));
+      left_out_.add_statement(statement);
     }
   }
 

@@ -35,7 +35,8 @@ void ObjMeshes::add(const ObjFace& face, Mesh& mesh) {
   }
   if (!cutter_.cut(points_)) {
     throw Error(ErrorCode::bad_input,
-                fmt::format("{}:{}: the face cannot be cut into triangles", path_, face.line));
+                fmt::format("{}:{}: the face crosses itself too often to be cut into triangles",
+                            path_, face.line));
   }
   if (cutter_.repeats() && face.corners > 3) repeating_.add(face);
   if (!cutter_.crossings().empty()) crossing_.add(face);

@@ -27,6 +27,11 @@ Imath::V3d newell_normal(std::span<const Vec3> points, std::span<const std::uint
 
 }  // namespace
 
+// A face that crosses itself more often than this times its corners would take too long. GLU has no
+// other way out of its sweep than an exception through it.
+constexpr std::size_t kMostCrossings = 2;
+struct TooManyCrossings {};
+
 struct PolygonCutter::Callbacks {
   static PolygonCutter& of(void* polygon) { return *static_cast<PolygonCutter*>(polygon); }
 
@@ -54,6 +59,7 @@ struct PolygonCutter::Callbacks {
         return;
       }
     }
+    if (cutter.crossings_.size() > kMostCrossings * cutter.points_.size()) throw TooManyCrossings();
     *out = to_data(static_cast<std::uint32_t>(cutter.points_.size() + cutter.crossings_.size()));
     cutter.crossings_.push_back(crossing);
   }
@@ -124,17 +130,21 @@ bool PolygonCutter::tessellate(const Imath::V3d& normal) {
   failed_ = false;
   loose_.clear();
   // No normal, as of a bow tie, lets GLU choose one.
-  gluTessNormal(tess_.get(), normal.x, normal.y, normal.z);
-  gluTessBeginPolygon(tess_.get(), this);
-  gluTessBeginContour(tess_.get());
-  for (const std::uint32_t corner : ring_) {
-    std::array<GLdouble, 3> at{};
-    for (int axis = 0; axis < 3; ++axis)
-      at[static_cast<std::size_t>(axis)] = double{points_[corner][axis]};
-    gluTessVertex(tess_.get(), at.data(), to_data(corner));
+  try {
+    gluTessNormal(tess_.get(), normal.x, normal.y, normal.z);
+    gluTessBeginPolygon(tess_.get(), this);
+    gluTessBeginContour(tess_.get());
+    for (const std::uint32_t corner : ring_) {
+      std::array<GLdouble, 3> at{};
+      for (int axis = 0; axis < 3; ++axis)
+        at[static_cast<std::size_t>(axis)] = double{points_[corner][axis]};
+      gluTessVertex(tess_.get(), at.data(), to_data(corner));
+    }
+    gluTessEndContour(tess_.get());
+    gluTessEndPolygon(tess_.get());
+  } catch (const TooManyCrossings&) {
+    return false;  // what GLU held of this face is lost
   }
-  gluTessEndContour(tess_.get());
-  gluTessEndPolygon(tess_.get());
   return !failed_;
 }
 

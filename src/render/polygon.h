@@ -31,7 +31,8 @@ class PolygonCutter {
   // `points`: at least three corners in order, finite, in a plane or near one. The triangles are
   // wound as the face is and cover what it goes around (nonzero winding). A corner that is where
   // the one before it is does not count; a face with fewer than three others becomes one triangle
-  // without area. False where the tessellator gives up.
+  // without area. False where it crosses itself more than twice
+  // for each corner.
   [[nodiscard]] bool cut(std::span<const Vec3> points);
 
   // Numbers below points.size() are corners, the others, less that, crossings.

@@ -19,7 +19,8 @@ enum class MaterialKind : std::uint8_t {
   mirror,     // perfect, tinted by reflectance
   glass,      // smooth dielectric of index `ior`, transmission tinted by reflectance
   conductor,  // GGX, Fresnel by Schlick with `reflectance` at normal incidence
-  coat  // dielectric GGX coat of `ior` over a diffuse base; `metalness` blends it into a conductor
+  coat,  // dielectric GGX coat of `ior` over a diffuse base; `metalness` blends it into a conductor
+  gloss  // GGX, Fresnel by Schlick with `specular` at normal incidence, over a diffuse base
 };
 
 struct Material {
@@ -27,6 +28,7 @@ struct Material {
   MaterialKind kind = MaterialKind::diffuse;
   Rgb reflectance{0.5f, 0.5f, 0.5f};
   int reflectance_texture = kNone;  // multiplies reflectance
+  Rgb specular{0, 0, 0};            // of gloss
   float roughness = 0.5f;           // perceptual: GGX alpha = roughness^2
   float metalness = 0;
   int roughness_metalness_texture = kNone;  // glTF: G multiplies roughness, B multiplies metalness

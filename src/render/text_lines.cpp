@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cfloat>
 #include <charconv>
@@ -18,6 +19,7 @@ namespace psf::render {
 namespace {
 
 constexpr std::string_view kSpace = " \t\v\f";
+constexpr std::size_t kMostNames = 16;  // a file of something else has a name in every line
 
 std::string read_text(const std::string& path) {
   std::error_code ignored;
@@ -193,19 +195,26 @@ void TextLines::fail(const std::string& what) const {
   throw Error(ErrorCode::bad_input, fmt::format("{}:{}: {}", path_, line_, what));
 }
 
-void LeftOut::add(std::string name) {
-  if (std::find(names_.begin(), names_.end(), name) == names_.end())
-    names_.push_back(std::move(name));
+void LeftOut::add(std::string_view name) {
+  if (all_.contains(name)) return;
+  all_.emplace(name);
+  if (names_.size() < kMostNames) names_.emplace_back(name);
+}
+
+void LeftOut::add_statement(std::string_view statement) {
+  const auto is_letter = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+  };
+  const bool is_word = statement.size() <= 32 &&
+                       !std::isdigit(static_cast<unsigned char>(statement[0])) &&
+                       std::all_of(statement.begin(), statement.end(), is_letter);
+  add(is_word ? statement : "lines that are no statement");
 }
 
 void LeftOut::warn(const std::string& path, Scene& scene) const {
-  constexpr std::size_t kMost = 16;  // a file of something else has a name in every line
   if (names_.empty()) return;
-  const std::size_t shown = std::min(names_.size(), kMost);
-  std::string text = fmt::format(
-      "{}: left out: {}", path,
-      fmt::join(names_.begin(), names_.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
-  if (shown < names_.size()) text += fmt::format(" and {} more", names_.size() - shown);
+  std::string text = fmt::format("{}: left out: {}", path, fmt::join(names_, ", "));
+  if (names_.size() < all_.size()) text += fmt::format(" and {} more", all_.size() - names_.size());
   scene.warnings.push_back(std::move(text));
 }
 

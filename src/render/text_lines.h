@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,12 +59,15 @@ class TextLines {
 // Names of what a file says and the picture does not show, each once.
 class LeftOut {
  public:
-  void add(std::string name);
+  void add(std::string_view name);
+  // The name of a statement that nothing is done with.
+  void add_statement(std::string_view statement);
   // One warning that names all of it, none where nothing is left out.
   void warn(const std::string& path, Scene& scene) const;
 
  private:
-  std::vector<std::string> names_;
+  std::vector<std::string> names_;  // the first few, in their order
+  std::set<std::string, std::less<>> all_;
 };
 
 // The spelling of `name` with which find_file finds a file: as it is, without quotes around it,

@@ -13,7 +13,12 @@ Transport::Transport(const Scene& scene, const IntegratorSettings& settings)
       lights_(scene, shapes_, accel_.radius()),
       coats_(scene.materials.size()) {
   std::map<float, std::shared_ptr<const CoatAlbedo>> tables;
+  std::shared_ptr<const CoatAlbedo> gloss;
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    if (scene.materials[m].kind == MaterialKind::gloss) {
+      if (gloss == nullptr) gloss = std::make_shared<CoatAlbedo>(CoatAlbedo::schlick());
+      coats_[m] = gloss;
+    }
     if (scene.materials[m].kind != MaterialKind::coat) continue;
     auto& table = tables[scene.materials[m].ior];
     if (table == nullptr) table = std::make_shared<CoatAlbedo>(scene.materials[m].ior);

@@ -82,6 +82,26 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("Furnace: white gloss cannot be seen, whatever it reflects itself") {
+  for (const float specular : {0.05f, 0.5f, 1.0f}) {
+    for (const float roughness : {0.0f, 0.15f, 0.6f}) {
+      CAPTURE(specular, roughness);
+      Scene scene = furnace();
+      const int gloss = add_material(scene, MaterialKind::gloss, 1);
+      scene.materials.back().roughness = roughness;
+      scene.materials.back().specular = grey(specular);
+      scene.spheres.push_back({"", Vec3(0.4f, 0.1f, 0.1f), 0.4f, gloss});
+      const auto integrator = make(scene, "path", kEndless);
+      const Estimate e = estimate(*integrator, ray({-0.3f, 0.2f, 0.1f}, {0.4f, 0.3f, 0.1f}),
+                                  SamplerKind::sobol, 512);
+      CAPTURE(e.mean, e.error);
+      CHECK(e.error < 0.005);
+      CHECK(e.mean < 1.001 + 3 * e.error);
+      CHECK(e.mean > 0.995 - 3 * e.error);
+    }
+  }
+}
+
 TEST_CASE("Furnace: a conductor is never brighter than what it mirrors") {
   for (const float roughness : {0.0f, 0.2f, 0.6f, 1.0f}) {
     Scene scene = furnace();

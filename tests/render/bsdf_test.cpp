@@ -27,6 +27,8 @@ const Case kCases[] = {
     {"coat", MaterialKind::coat, 1, 0.5f, 0},
     {"rough coat", MaterialKind::coat, 1, 1, 0},
     {"metallic coat", MaterialKind::coat, 1, 0.4f, 0.6f},
+    {"smooth gloss", MaterialKind::gloss, 1, 0.2f, 0},
+    {"rough gloss", MaterialKind::gloss, 1, 0.7f, 0},
 };
 
 struct Fixture {
@@ -35,10 +37,12 @@ struct Fixture {
     Material& m = scene.materials[static_cast<std::size_t>(index)];
     m.roughness = c.roughness;
     m.metalness = c.metalness;
+    m.specular = Rgb(0.7f, 0.3f, 0.05f);
   }
   [[nodiscard]] Bsdf bsdf(bool front = true) const {
-    static const CoatAlbedo table(1.5f);
-    return Bsdf(scene.materials[0], scene, {0, 0}, front, &table);
+    static const CoatAlbedo table(1.5f), schlick = CoatAlbedo::schlick();
+    const Material& m = scene.materials[0];
+    return Bsdf(m, scene, {0, 0}, front, m.kind == MaterialKind::gloss ? &schlick : &table);
   }
   Scene scene;
 };
@@ -147,7 +151,8 @@ TEST_CASE("No material reflects more than it gets; a white coat loses nothing") 
       CHECK(energy < 1.002);
       if (c.kind == MaterialKind::diffuse)
         CHECK(energy == Approx(double{c.reflectance}).epsilon(1e-4));
-      if (c.kind == MaterialKind::coat && c.metalness == 0) CHECK(energy > 0.995);
+      if ((c.kind == MaterialKind::coat || c.kind == MaterialKind::gloss) && c.metalness == 0)
+        CHECK(energy > 0.995);
       if (c.kind == MaterialKind::conductor && c.roughness < 0.3f && cosine > 0.3)
         CHECK(energy > 0.85);
     }

@@ -1,7 +1,7 @@
 // Material libraries: what becomes of each statement, and what is refused.
 #include <algorithm>
 
-#include "catch.h"
+#include "analytic_support.h"
 #include "load_support.h"
 
 namespace psf::render {
@@ -40,6 +40,36 @@ std::string left_out_of(const std::string& statements) {
     if (at != std::string::npos) all += warning.substr(at + mark.size());
   }
   return all;
+}
+
+// Mean radiance from above of a square of 2 x 2 at z = 0 under a white sky, or of a box of 2 x 2 x
+// 1 whose top that is.
+Rgb under_white_sky(const std::string& statements, bool box = false) {
+  const TempFolder folder;
+  folder.write("s.mtl", "newmtl m\n" + statements);
+  std::string obj = "mtllib s.mtl\nusemtl m\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n";
+  if (box) {
+    obj +=
+        "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nf 8 7 6 5\n"
+        "f 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n";
+  }
+  SceneOverrides overrides;
+  overrides.sky = Rgb(1);
+  const Scene scene = load_scene(folder.write("s.obj", obj), overrides);
+  const auto integrator = test::make(scene, "path", 64);
+  constexpr std::uint64_t kPaths = 16384;
+  Imath::V3d sum(0);
+  for (std::uint64_t i = 0; i < kPaths; ++i) {
+    const Rgb c = test::pixel(test::trace(*integrator, test::ray({0.3f, 0.2f, 5}, {0.3f, 0.2f, 0}),
+                                          SamplerKind::sobol, 0, i));
+    sum += Imath::V3d(double{c.x}, double{c.y}, double{c.z});
+  }
+  return Rgb(Vec3(sum / double{kPaths}));
+}
+
+void check_close(const Rgb& found, const Rgb& expected, double relative) {
+  CAPTURE(found, expected);
+  for (int c = 0; c < 3; ++c) CHECK(found[c] == Approx(double{expected[c]}).epsilon(relative));
 }
 
 TEST_CASE("what MTL leaves out has the format's value, whatever stands before", "[load][mtl]") {
@@ -158,6 +188,20 @@ TEST_CASE("MTL maps to our materials as documented", "[load][mtl]") {
   CHECK(material_of("illum 1\nKd 0.1 0.2 0.3\nKs 1 1 1").kind == MaterialKind::diffuse);
   CHECK(material_of("Kd 0 0 0\nKe 5 6 7").emission == Rgb(5, 6, 7));
   CHECK(material_of("Kd 1").two_sided);
+  const Material shiny = material_of("illum 2\nKd 0.5 0.4 0.3\nKs 0.2 0.1 0\nNs 30\nNi 1.4");
+  CHECK(shiny.kind == MaterialKind::gloss);
+  CHECK(shiny.reflectance == Rgb(0.5f, 0.4f, 0.3f));
+  CHECK(shiny.specular == Rgb(0.2f, 0.1f, 0));
+  // Ns 30: alpha^2 = 2 / 32, so alpha = 1/4 and the perceptual roughness 1/2.
+  CHECK(shiny.roughness == Approx(0.5));
+  CHECK(material_of("Kd 0.5\nKs 0.2\nNs -2").roughness == 1);  // without illum Ks counts
+  CHECK(material_of("Kd 0.5\nKs 0\nillum 2").kind == MaterialKind::diffuse);
+  for (const std::string model : {"3", "5", "8"}) {
+    const Material m = material_of("Kd 0.5\nKs 0.2\nNs 30\nillum " + model);
+    CHECK(m.kind == MaterialKind::gloss);
+    CHECK(m.roughness == 0);
+  }
+  CHECK(material_of("map_Kd w.ppm\nKs 0.2").reflectance_texture == 0);
   const Material metal = material_of("illum 2\nKd 0 0 0\nKs 0.9 0.7 0.5\nNs 126");
   CHECK(metal.kind == MaterialKind::conductor);
   CHECK(metal.reflectance == Rgb(0.9f, 0.7f, 0.5f));
@@ -186,6 +230,38 @@ TEST_CASE("MTL maps to our materials as documented", "[load][mtl]") {
     CAPTURE(solid);
     CHECK(material_of(solid).kind == MaterialKind::diffuse);
   }
+}
+
+TEST_CASE("under a white sky a glossy surface shows Ks and what Kd makes of the rest",
+          "[load][mtl]") {
+  for (const std::string model : {"3", "5", "8"}) {
+    CAPTURE(model);
+    // A mirror in all but its name, whose Kd is small beside its Ks.
+    check_close(under_white_sky("illum " + model + "\nKd 0.05\nKs 0.95\nNs 1000"),
+                Rgb(0.95f + 0.05f * 0.05f), 2e-3);
+    check_close(under_white_sky("illum " + model + "\nKd 0.6 0.4 0.2\nKs 0.2 0.3 0.9"),
+                Rgb(0.2f + 0.8f * 0.6f, 0.3f + 0.7f * 0.4f, 0.9f + 0.1f * 0.2f), 5e-3);
+    check_close(under_white_sky("illum " + model + "\nKs 0.8 0.7 0.6"), Rgb(0.8f, 0.7f, 0.6f),
+                1e-4);
+  }
+  check_close(under_white_sky("illum 2\nKd 0.6 0.4 0.2\nKs 0.2 0.3 0.9\nNs 5000"),
+              Rgb(0.2f + 0.8f * 0.6f, 0.3f + 0.7f * 0.4f, 0.9f + 0.1f * 0.2f), 1e-2);
+  // Nothing is lost or made where the base is white, however rough.
+  for (const std::string exponent : {"0", "3", "30"})
+    check_close(under_white_sky("Kd 1\nKs 0.2 0.3 0.9\nNs " + exponent), Rgb(1), 1e-2);
+  check_close(under_white_sky("illum 1\nKd 0.6 0.4 0.2\nKs 0.2 0.3 0.9"), Rgb(0.6f, 0.4f, 0.2f),
+              1e-4);
+}
+
+TEST_CASE("light that crosses a closed body is multiplied by Tf once", "[load][mtl]") {
+  const std::string glass = "illum 4\nTf 0.25 0.49 0.81\nNi ";
+  check_close(under_white_sky(glass + "1", true), Rgb(0.25f, 0.49f, 0.81f), 1e-3);
+  check_close(under_white_sky(glass + "1", false), Rgb(0.5f, 0.7f, 0.9f), 1e-3);
+  // R = 0.04 at each surface: R + (1 - R)^2 Tf (1 + R + R^2 + ...), as the box has but two sides
+  // for a ray straight down.
+  check_close(under_white_sky(glass + "1.5", true),
+              Rgb(0.04f + 0.96f * 0.25f, 0.04f + 0.96f * 0.49f, 0.04f + 0.96f * 0.81f), 1e-2);
+  check_close(under_white_sky("d 0.1\nNi 1.5", true), Rgb(1), 1e-3);
 }
 
 }  // namespace

@@ -213,6 +213,9 @@ TEST_CASE("material libraries are found whatever their names, several on a line"
   CHECK(names(missing) == "a twice default ");
   CHECK(warns(missing, "s.obj:1: the material library not there.mtl cannot be opened"));
   CHECK(warns(missing, "s.obj:1: the material library nor this.mtl cannot be opened"));
+  std::string words;
+  for (int i = 0; i < 3000; ++i) words += "w" + std::to_string(i % 10) + " ";
+  CHECK(names(load(words + "a.mtl my own b.mtl")) == "a twice b default ");
   CHECK(warns(load("lib"), "s.obj:1: the material library lib cannot be opened"));
 }
 
@@ -247,8 +250,13 @@ TEST_CASE("what an OBJ file says and the picture does not show is named once", "
       "s off\nf 1 2 3\ns 1\nf 1/1/1 2/1/1 3/1/1\n");
   CHECK(quiet.warnings.size() == 1);  // no light
   std::string noise = kSquare + "f 1 2 3\n";
-  for (int i = 0; i < 100; ++i) noise += "word" + std::to_string(i) + "\n";
-  CHECK(warns(obj_scene(noise), "word15 and 84 more"));
+  for (int i = 0; i < 100; ++i) noise += "word-" + std::to_string(i) + "\n";
+  CHECK_FALSE(warns(obj_scene(noise), "word"));
+  CHECK(warns(obj_scene(noise), "s.obj: left out: lines that are no statement"));
+  const std::string letters = "abcdefghijklmnopqrstuvwxyz";
+  for (const char a : letters) noise += std::string("x") + a + "\n";
+  CHECK(warns(obj_scene(noise), "xo and 11 more"));
+  CHECK(warns(obj_scene(kSquare + "f 1 2 3\n\x1b[31m\n"), "left out: lines that are no statement"));
 }
 
 TEST_CASE("concave faces keep their area and front, whatever corner they start with",
