@@ -91,6 +91,17 @@ std::string format_bytes(double bytes) {
   return fmt::format("{:.1f} kB", bytes / 1e3);
 }
 
+// A dump whose vertices are all in one place has nothing to filter.
+void check_digits(const RenderOptions& options, const render::Scene& scene) {
+  const render::WorldDigits digits = render::world_digits(scene);
+  if (digits.steps() >= 1) return;
+  throw Error(ErrorCode::limit,
+              fmt::format("{}: the scene is {:.3g} across and {:.3g} from the origin, where the "
+                          "positions of a dump keep {:.3g} of a unit: its vertices would all be in "
+                          "one place; move the scene nearer, or write --image alone",
+                          options.scene, digits.across, digits.reach, digits.step));
+}
+
 // With --resume a file that is there goes on; one that is not is begun.
 formats::Writer open_writer(const RenderOptions& options, const formats::Head& head) {
   formats::WriterOptions writer_options;
@@ -123,6 +134,7 @@ void run(RenderOptions& options) {
   settings.replay = !options.images.empty();
   std::optional<formats::Writer> writer;
   if (!options.output.empty()) {
+    check_digits(options, scene);
     writer.emplace(open_writer(options, render::make_head(scene, *integrator, settings)));
   }
   const double prepared =

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "core/output_file.h"
@@ -23,12 +24,13 @@ using render::Enumeration;
 using render::SamplerKind;
 
 // "1,2,3"
-std::optional<Vec3> parse_triple(std::string_view text) {
-  Vec3 result;
+template <class T>
+std::optional<Imath::Vec3<T>> parse_triple(std::string_view text) {
+  Imath::Vec3<T> result;
   for (int k = 0; k < 3; ++k) {
     const std::size_t end = k < 2 ? text.find(',') : text.size();
     if (end == std::string_view::npos) return std::nullopt;
-    const auto number = parse_number<float>(text.substr(0, end));
+    const auto number = parse_number<T>(text.substr(0, end));
     if (!number) return std::nullopt;
     result[k] = *number;
     text.remove_prefix(std::min(end + 1, text.size()));
@@ -46,8 +48,8 @@ CLI::Option* add_triple(CLI::App& app, const std::string& name, Target& target, 
   return add_parsed(app, name, colour ? "R,G,B" : "X,Y,Z",
                     colour ? "three numbers R,G,B of at least 0" : "three numbers X,Y,Z", help,
                     [&target, colour](const std::string& text) {
-                      const auto triple = parse_triple(text);
-                      if (!triple || (colour && !is_colour(*triple))) return false;
+                      const auto triple = parse_triple<std::decay_t<decltype(target->x)>>(text);
+                      if (!triple || (colour && !is_colour(Vec3(*triple)))) return false;
                       target.emplace(triple->x, triple->y, triple->z);
                       return true;
                     });
@@ -74,7 +76,7 @@ bool parse_shade_rate(const std::string& text, std::uint32_t& rate) {
 
 // A colour, or else the name of a picture; text made of numbers alone is never taken for a name.
 bool parse_sky(const std::string& text, render::SceneOverrides& overrides) {
-  if (const auto triple = parse_triple(text)) {
+  if (const auto triple = parse_triple<float>(text)) {
     if (!is_colour(*triple)) return false;
     overrides.sky.emplace(triple->x, triple->y, triple->z);
     return true;

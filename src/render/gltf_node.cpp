@@ -95,7 +95,7 @@ void read_vectors(const GltfLoad& load, const tinygltf::Primitive& primitive, co
 }
 
 void add_primitive(GltfLoad& load, const tinygltf::Primitive& primitive, const std::string& name,
-                   const Mat4& to_world, const std::string& place) {
+                   const Imath::M44d& to_scene, const std::string& place) {
   const int mode = primitive.mode == -1 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
   if (mode < TINYGLTF_MODE_TRIANGLES || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
     return load.warn_once("points and lines are left out");
@@ -122,7 +122,11 @@ void add_primitive(GltfLoad& load, const tinygltf::Primitive& primitive, const s
   }
   mesh.triangles = to_triangles(indices, mode);
   try {
-    transform(mesh, to_world);
+    if (load.scene.space.exact) {
+      transform(mesh, to_scene);
+    } else {
+      transform(mesh, Mat4(to_scene));
+    }
   } catch (const Error& error) {
     load.fail(place, error.what());
   }
@@ -130,19 +134,19 @@ void add_primitive(GltfLoad& load, const tinygltf::Primitive& primitive, const s
 }
 
 // The image of a direction, unit.
-Vec3 turn(const Mat4& m, const Vec3& direction) {
+Vec3 turn(const Imath::M44d& m, const Vec3& direction) {
   Vec3 turned;
-  m.multDirMatrix(direction, turned);
+  Mat4(m).multDirMatrix(direction, turned);
   return turned.normalized();
 }
 
-Vec3 place_of(const Mat4& m) {
-  return {m[3][0], m[3][1], m[3][2]};
+Vec3 place_of(const Imath::M44d& m) {
+  return Vec3(Imath::V3d(m[3][0], m[3][1], m[3][2]));
 }
 
 }  // namespace
 
-void add_gltf_mesh(GltfLoad& load, int index, const std::string& name, const Mat4& to_world,
+void add_gltf_mesh(GltfLoad& load, int index, const std::string& name, const Imath::M44d& to_scene,
                    const std::string& place) {
   if (static_cast<std::size_t>(index) >= load.model.meshes.size()) {
     load.fail(place, fmt::format("there is no mesh {}", index));
@@ -150,13 +154,13 @@ void add_gltf_mesh(GltfLoad& load, int index, const std::string& name, const Mat
   const tinygltf::Mesh& mesh = load.model.meshes[static_cast<std::size_t>(index)];
   for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
     const std::string part = mesh.primitives.size() == 1 ? name : fmt::format("{}/{}", name, i);
-    add_primitive(load, mesh.primitives[i], part, to_world,
+    add_primitive(load, mesh.primitives[i], part, to_scene,
                   fmt::format("/meshes/{}/primitives/{}", index, i));
   }
 }
 
-void add_gltf_camera(GltfLoad& load, int index, const std::string& name, const Mat4& to_world,
-                     const std::string& place) {
+void add_gltf_camera(GltfLoad& load, int index, const std::string& name,
+                     const Imath::M44d& to_scene, const std::string& place) {
   if (static_cast<std::size_t>(index) >= load.model.cameras.size()) {
     load.fail(place, fmt::format("there is no camera {}", index));
   }
@@ -165,24 +169,25 @@ void add_gltf_camera(GltfLoad& load, int index, const std::string& name, const M
   const double aspect = gltf.perspective.aspectRatio > 0 ? gltf.perspective.aspectRatio : 1.0;
   Camera camera;
   camera.name = gltf.name.empty() ? name : gltf.name;
-  camera.eye = place_of(to_world);
-  camera.target = camera.eye + turn(to_world, {0, 0, -1});
-  camera.up = turn(to_world, {0, 1, 0});
+  camera.eye = place_of(to_scene);
+  camera.target = camera.eye + turn(to_scene, {0, 0, -1});
+  camera.up = turn(to_scene, {0, 1, 0});
   camera.fov = static_cast<float>(2 * std::atan(std::tan(gltf.perspective.yfov / 2) * aspect));
   camera.height =
       static_cast<std::uint32_t>(std::lround(std::clamp(camera.width / aspect, 1.0, 65536.0)));
   load.scene.cameras.push_back(std::move(camera));
 }
 
-void add_gltf_light(GltfLoad& load, int index, const Mat4& to_world, const std::string& place) {
+void add_gltf_light(GltfLoad& load, int index, const Imath::M44d& to_scene,
+                    const std::string& place) {
   if (index < 0 || static_cast<std::size_t>(index) >= load.model.lights.size()) {
     load.fail(place, fmt::format("there is no light {}", index));
   }
   const tinygltf::Light& gltf = load.model.lights[static_cast<std::size_t>(index)];
   Light light;
   light.name = gltf.name.empty() ? fmt::format("light {}", index) : gltf.name;
-  light.position = place_of(to_world);
-  light.direction = turn(to_world, {0, 0, -1});
+  light.position = place_of(to_scene);
+  light.direction = turn(to_scene, {0, 0, -1});
   const auto color = [&](std::size_t i) { return i < gltf.color.size() ? gltf.color[i] : 1.0; };
   for (int i = 0; i < 3; ++i) {
     light.intensity[i] = static_cast<float>(color(static_cast<std::size_t>(i)) * gltf.intensity);

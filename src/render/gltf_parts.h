@@ -47,11 +47,12 @@ struct GltfLoad {
 void add_gltf_materials(GltfLoad& load);
 // Index in Scene::materials; the default of glTF where the primitive has none.
 [[nodiscard]] int gltf_material(GltfLoad& load, int material, const std::string& place);
-// The light, camera or triangles of a node in world space.
-void add_gltf_light(GltfLoad& load, int light, const Mat4& to_world, const std::string& place);
-void add_gltf_camera(GltfLoad& load, int camera, const std::string& name, const Mat4& to_world,
-                     const std::string& place);
-void add_gltf_mesh(GltfLoad& load, int mesh, const std::string& name, const Mat4& to_world,
+// The light, camera or triangles of a node; `to_scene`: from the node to the scene's space.
+void add_gltf_light(GltfLoad& load, int light, const Imath::M44d& to_scene,
+                    const std::string& place);
+void add_gltf_camera(GltfLoad& load, int camera, const std::string& name,
+                     const Imath::M44d& to_scene, const std::string& place);
+void add_gltf_mesh(GltfLoad& load, int mesh, const std::string& name, const Imath::M44d& to_scene,
                    const std::string& place);
 
 }  // namespace psf::render

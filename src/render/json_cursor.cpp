@@ -156,9 +156,13 @@ std::vector<JsonCursor> JsonCursor::items(std::string_view key) const {
 }
 
 float JsonCursor::number(const Range& range) const {
+  return static_cast<float>(real(range));
+}
+
+double JsonCursor::real(const Range& range) const {
   const double value = value_->is_number() ? value_->get<double>() : 2 * range.max;
   if (!(value >= range.min && value <= range.max)) expected(fmt::format("a number {}", range.text));
-  return static_cast<float>(value);
+  return value;
 }
 
 std::uint32_t JsonCursor::integer(std::uint32_t min, std::uint32_t max) const {
@@ -187,7 +191,7 @@ std::size_t JsonCursor::choice(std::span<const std::string_view> known) const {
   return static_cast<std::size_t>(found - known.begin());
 }
 
-void JsonCursor::read_numbers(std::span<float> out, const Range& range) const {
+void JsonCursor::read_numbers(std::span<double> out, const Range& range) const {
   if (!value_->is_array() || value_->size() != out.size()) {
     expected(fmt::format("an array of {} numbers", out.size()));
   }
@@ -198,18 +202,22 @@ void JsonCursor::read_numbers(std::span<float> out, const Range& range) const {
       JsonCursor(item, file_, fmt::format("{}/{}", path_, i))
           .expected(fmt::format("a number {}", range.text));
     }
-    out[i] = static_cast<float>(value);
+    out[i] = value;
   }
 }
 
 Vec2 JsonCursor::vec2(const Range& range) const {
-  std::array<float, 2> v{};
+  std::array<double, 2> v{};
   read_numbers(v, range);
-  return {v[0], v[1]};
+  return {static_cast<float>(v[0]), static_cast<float>(v[1])};
 }
 
 Vec3 JsonCursor::vec3(const Range& range) const {
-  std::array<float, 3> v{};
+  return Vec3(vec3d(range));
+}
+
+Imath::V3d JsonCursor::vec3d(const Range& range) const {
+  std::array<double, 3> v{};
   read_numbers(v, range);
   return {v[0], v[1], v[2]};
 }
@@ -231,8 +239,8 @@ Rgb JsonCursor::rgb(const Range& range) const {
   return {v.x, v.y, v.z};
 }
 
-std::vector<float> JsonCursor::numbers(std::size_t count) const {
-  std::vector<float> v(count);
+std::vector<double> JsonCursor::numbers(std::size_t count) const {
+  std::vector<double> v(count);
   read_numbers(v, kAnyNumber);
   return v;
 }

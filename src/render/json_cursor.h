@@ -59,9 +59,11 @@ class JsonCursor {
   [[nodiscard]] std::size_t choice(std::span<const std::string_view> known) const;
   [[nodiscard]] Vec2 vec2(const Range& range = kAnyNumber) const;
   [[nodiscard]] Vec3 vec3(const Range& range = kAnyNumber) const;
+  [[nodiscard]] Imath::V3d vec3d(const Range& range = kAnyNumber) const;
+  [[nodiscard]] double real(const Range& range = kAnyNumber) const;
   [[nodiscard]] Vec3 direction() const;             // normalised; zero: an error
   [[nodiscard]] Rgb rgb(const Range& range) const;  // [r, g, b] or one number for grey
-  [[nodiscard]] std::vector<float> numbers(std::size_t count) const;
+  [[nodiscard]] std::vector<double> numbers(std::size_t count) const;
 
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] std::string path() const { return path_.empty() ? "/" : path_; }  // JSON pointer
@@ -72,7 +74,7 @@ class JsonCursor {
  private:
   JsonCursor(const nlohmann::json& value, std::string file, std::string path)
       : value_(&value), file_(std::move(file)), path_(std::move(path)) {}
-  void read_numbers(std::span<float> out, const Range& range) const;
+  void read_numbers(std::span<double> out, const Range& range) const;
 
   const nlohmann::json* value_;
   std::string file_, path_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 
 #include "formats/error.h"
@@ -76,24 +77,49 @@ void load_mesh_file(const std::string& path, Scene& scene) {
               path + ": not a kind of mesh file that psf reads (.obj, .gltf, .glb)");
 }
 
+namespace {
+
+// From world units to those of the scene: what is emitted toward a surface of its unit.
+void scale_intensities(Scene& scene) {
+  for (Light& light : scene.lights) {
+    if (light.kind == LightKind::directional || !is_finite(light.intensity)) continue;
+    for (int c = 0; c < 3; ++c) {
+      light.intensity[c] = std::ldexp(light.intensity[c], -2 * scene.space.exponent);
+    }
+    if (!is_finite(light.intensity)) {
+      throw Error(ErrorCode::limit,
+                  fmt::format("{}: light {}: its irradiance at the size of the scene is more than "
+                              "a float holds; scale the scene or the light",
+                              scene.name, light.name));
+    }
+  }
+}
+
+}  // namespace
+
 Scene load_scene(const std::string& path, const SceneOverrides& overrides) {
   std::error_code error;
   if (!fs::exists(path, error)) throw Error(ErrorCode::io, path + ": no such file");
   if (fs::is_directory(path, error))
     throw Error(ErrorCode::io, path + ": is a folder, a scene file is needed");
-  Scene scene;
-  scene.name = fs::path(path).filename().string();
   const std::string extension = lower(fs::path(path).extension().string());
-  if (extension == ".json") {
-    load_json(path, scene);
-  } else if (extension == ".obj" || extension == ".gltf" || extension == ".glb") {
-    load_mesh_file(path, scene);
-  } else {
-    throw Error(ErrorCode::bad_input,
-                path + ": not a kind of scene that psf reads (.json, .obj, .gltf, .glb)");
-  }
+  Scene scene = load_fitting(path, [&](Scene& empty) {
+    if (extension == ".json") {
+      load_json(path, empty);
+    } else if (extension == ".obj" || extension == ".gltf" || extension == ".glb") {
+      load_mesh_file(path, empty);
+    } else {
+      throw Error(ErrorCode::bad_input,
+                  path + ": not a kind of scene that psf reads (.json, .obj, .gltf, .glb)");
+    }
+  });
+  scene.name = fs::path(path).filename().string();
+  scale_intensities(scene);
   validate(path, scene);  // first: the automatic camera needs finite geometry
+  note_lost_digits(path, scene);
   apply_overrides(overrides, scene);
+  split_large_triangles(scene);
+  check_large_spheres(path, scene);
   scene.hash = hash_of(scene);
   return scene;
 }

@@ -66,48 +66,58 @@ void check_extensions(const GltfLoad& load) {
   }
 }
 
-Mat4 local_matrix(const GltfLoad& load, const tinygltf::Node& node, const std::string& place) {
+// In float or double, see Space::exact.
+template <class T>
+Imath::Matrix44<T> local_matrix(const GltfLoad& load, const tinygltf::Node& node,
+                                const std::string& place) {
   const auto sized = [&](const std::vector<double>& v, std::size_t size, const char* key) {
     if (!v.empty() && v.size() != size)
       load.fail(place, fmt::format("\"{}\" has not {} numbers", key, size));
     return !v.empty();
   };
-  const auto f = [](double value) { return static_cast<float>(value); };
-  Mat4 m;
+  const auto f = [](double value) { return static_cast<T>(value); };
+  using Vector = Imath::Vec3<T>;
+  Imath::Matrix44<T> m;
   // glTF stores columns of a matrix for column vectors: the same order as our rows for row vectors.
   if (sized(node.matrix, 16, "matrix")) {
     for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = f(node.matrix[static_cast<std::size_t>(i)]);
     return m;
   }
   if (sized(node.scale, 3, "scale"))
-    m.setScale(Vec3(f(node.scale[0]), f(node.scale[1]), f(node.scale[2])));
+    m.setScale(Vector(f(node.scale[0]), f(node.scale[1]), f(node.scale[2])));
   if (sized(node.rotation, 4, "rotation")) {
     const auto& q = node.rotation;
-    m *= Imath::Quatf(f(q[3]), f(q[0]), f(q[1]), f(q[2])).normalized().toMatrix44();
+    m *= Imath::Quat<T>(f(q[3]), f(q[0]), f(q[1]), f(q[2])).normalized().toMatrix44();
   }
   if (sized(node.translation, 3, "translation")) {
     const auto& t = node.translation;
-    m *= Mat4().setTranslation(Vec3(f(t[0]), f(t[1]), f(t[2])));
+    m *= Imath::Matrix44<T>().setTranslation(Vector(f(t[0]), f(t[1]), f(t[2])));
   }
   return m;
 }
 
-void add_node(GltfLoad& load, int index, const Mat4& parent, int depth) {
+Imath::M44d world_matrix(const GltfLoad& load, const tinygltf::Node& node,
+                         const Imath::M44d& parent, const std::string& place) {
+  if (load.scene.space.exact) return local_matrix<double>(load, node, place) * parent;
+  return Imath::M44d(local_matrix<float>(load, node, place) * Mat4(parent));
+}
+
+void add_node(GltfLoad& load, int index, const Imath::M44d& parent, int depth) {
   const std::string place = fmt::format("/nodes/{}", index);
   if (index < 0 || static_cast<std::size_t>(index) >= load.model.nodes.size())
     load.fail(place, "no such node");
   if (depth > kMaxDepth)
     load.fail(place, fmt::format("more than {} nodes within nodes, or a circle", kMaxDepth));
   const tinygltf::Node& node = load.model.nodes[static_cast<std::size_t>(index)];
-  const Mat4 to_world = local_matrix(load, node, place) * parent;
+  const Imath::M44d to_scene = world_matrix(load, node, parent, place);
   const std::string name = node.name.empty() ? fmt::format("node {}", index) : node.name;
   if (node.skin >= 0) load.warn_once("skins are left out, meshes are as modelled");
-  if (node.mesh >= 0) add_gltf_mesh(load, node.mesh, name, to_world, place);
-  if (node.camera >= 0) add_gltf_camera(load, node.camera, name, to_world, place);
+  if (node.mesh >= 0) add_gltf_mesh(load, node.mesh, name, to_scene, place);
+  if (node.camera >= 0) add_gltf_camera(load, node.camera, name, to_scene, place);
   if (const auto* light = find_extension(node.extensions, "KHR_lights_punctual")) {
-    add_gltf_light(load, static_cast<int>(number_or(*light, "light", -1)), to_world, place);
+    add_gltf_light(load, static_cast<int>(number_or(*light, "light", -1)), to_scene, place);
   }
-  for (const int child : node.children) add_node(load, child, to_world, depth + 1);
+  for (const int child : node.children) add_node(load, child, to_scene, depth + 1);
 }
 
 // The nodes of the scene to show; without scenes, those that are nobody's child.
@@ -153,7 +163,7 @@ void load_gltf(const std::string& path, Scene& scene) {
   parse(load);
   check_extensions(load);
   add_gltf_materials(load);
-  for (const int node : root_nodes(load)) add_node(load, node, Mat4(), 0);
+  for (const int node : root_nodes(load)) add_node(load, node, scene.space.to_local(), 0);
 }
 
 }  // namespace psf::render

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "formats/error.h"
+#include "render/load_parts.h"
 #include "render/mtl.h"
 #include "render/obj_file.h"
 #include "render/obj_mesh.h"
@@ -21,7 +22,12 @@ class ObjLoad {
 
   void run() {
     LeftOut left_out;
-    const ObjFile file = read_obj(path_, left_out);
+    const ObjFile file = read_obj(path_, scene_.space, left_out);
+    if (!scene_.space.exact) {
+      // In floats, faces may be no faces far from the origin.
+      scene_.wanted = moved_space(scene_.space, file.bounds);
+      if (scene_.wanted.exact) return;
+    }
     for (const ObjFile::Libraries& line : file.libraries) add_libraries(line);
     ObjMeshes meshes(path_, file);
     for (const ObjPart& part : file.parts) {

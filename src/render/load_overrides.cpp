@@ -59,8 +59,8 @@ void override_cameras(const SceneOverrides& o, Scene& scene) {
     // One pose on the command line is one camera: the first of the scene gives what is not said.
     scene.cameras.resize(1);
     Camera& camera = scene.cameras[0];
-    if (o.eye) camera.eye = *o.eye;
-    if (o.target) camera.target = *o.target;
+    if (o.eye) camera.eye = scene.space.local(*o.eye);
+    if (o.target) camera.target = scene.space.local(*o.target);
     if (o.up) camera.up = unit(*o.up, "--up");
   }
   if (o.fov && !(*o.fov > 0 && *o.fov < 180)) {
@@ -115,6 +115,10 @@ void check_camera(const Camera& camera, std::size_t index, const std::string& fi
   };
   if (!is_finite(camera.eye) || !is_finite(camera.target) || !is_finite(camera.up)) {
     fail("eye, target and up must be finite");
+  }
+  if (!in_space(camera.eye) || !in_space(camera.target)) {
+    fail(fmt::format("eye or target is farther away than {:.0e} times the scene's size", kFarthest),
+         ErrorCode::limit);
   }
   const Vec3 view = camera.target - camera.eye;
   if (!(view.length() > 0)) fail("eye and target are the same point, so it looks nowhere");
