@@ -123,7 +123,13 @@ void run(RenderOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const render::Scene scene = render::load_scene(options.scene, options.overrides);
   if (!options.common.quiet) {
-    for (const std::string& warning : scene.warnings) fmt::print(stderr, "note: {}\n", warning);
+    for (std::string warning : scene.warnings) {
+      // A name in a file may hold what ends a line or what a terminal obeys.
+      std::replace_if(
+          warning.begin(), warning.end(), [](unsigned char c) { return c < ' ' || c == 0x7F; },
+          '?');
+      fmt::print(stderr, "note: {}\n", warning);
+    }
   }
   auto& settings = options.settings;
   settings.producer = std::string("psf-render ") + kVersion;

@@ -55,13 +55,22 @@ std::string find_file(const std::string& beside, const std::string& file) {
   return place.string();
 }
 
-int TextureTable::load(const std::string& scene_file, const std::string& file,
-                       ColorSpace color_space, const std::string& wanted_by) {
+int TextureTable::load(const std::string& scene_file, const std::string& file, TextureUse use,
+                       const std::string& wanted_by) {
   const std::string path = find_file(scene_file, file);
-  const auto [entry, is_new] = known_.try_emplace({path, color_space}, kNone);
+  const auto [entry, is_new] = known_.try_emplace({path, use}, kNone);
   if (!is_new) return entry->second;
+  std::error_code ignored;
+  if (lenient_ && fs::exists(path, ignored)) {
+    const std::string why = Texture::why_unreadable(path);
+    if (!why.empty()) {
+      scene_.warnings.push_back(
+          fmt::format("{}: {}: {}; the picture is left out", wanted_by, path, why));
+      return kNone;
+    }
+  }
   try {
-    scene_.textures.push_back(Texture::load(path, color_space));
+    scene_.textures.push_back(Texture::load(path, use, scene_.warnings));
   } catch (const Error& error) {
     throw Error(error.code(), wanted_by + ": " + error.what());
   }

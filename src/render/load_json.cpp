@@ -1,4 +1,5 @@
 // The JSON scene file: cameras, environment and lights; the rest is in json_*.cpp.
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "formats/error.h"
@@ -39,7 +40,7 @@ Environment read_environment(const JsonCursor& json, JsonLoad& load) {
   Environment environment;
   if (const auto map = json.find("map")) {
     environment.texture =
-        load.textures.load(map->file(), map->text(), ColorSpace::srgb, map->where());
+        load.textures.load(map->file(), map->text(), TextureUse::radiance, map->where());
     environment.radiance = Rgb(1);
   }
   if (const auto radiance = json.find("radiance"))

@@ -18,7 +18,8 @@ namespace {
 
 class ObjLoad {
  public:
-  ObjLoad(const std::string& path, Scene& scene) : path_(path), scene_(scene), textures_(scene) {}
+  ObjLoad(const std::string& path, Scene& scene)
+      : path_(path), scene_(scene), textures_(scene, true) {}
 
   void run() {
     LeftOut left_out;

@@ -75,10 +75,15 @@ void override_cameras(const SceneOverrides& o, Scene& scene) {
     }
   }
   for (Camera& camera : scene.cameras) {
-    if (o.fov) camera.fov = *o.fov * kRadians;
     if (o.size) {
       camera.width = static_cast<std::uint32_t>(o.size->x);
       camera.height = static_cast<std::uint32_t>(o.size->y);
+    }
+    if (o.fov) {
+      camera.fov = *o.fov * kRadians;
+    } else if (camera.vertical_fov > 0 && camera.height > 0) {
+      const float aspect = static_cast<float>(camera.width) / static_cast<float>(camera.height);
+      camera.fov = 2 * std::atan(std::tan(camera.vertical_fov / 2) * aspect);
     }
   }
 }
@@ -90,7 +95,7 @@ void override_lights(const SceneOverrides& o, Scene& scene) {
     check_radiance(scene.environment.radiance, "--sky");
   }
   if (o.sky_map) {
-    scene.textures.push_back(Texture::load(*o.sky_map, ColorSpace::srgb));
+    scene.textures.push_back(Texture::load(*o.sky_map, TextureUse::radiance, scene.warnings));
     scene.environment.texture = static_cast<int>(scene.textures.size()) - 1;
   }
   if (o.sun || o.sun_direction) {
@@ -106,6 +111,19 @@ void override_lights(const SceneOverrides& o, Scene& scene) {
     check_radiance(sun.intensity, "--sun");
     scene.lights.push_back(std::move(sun));
   }
+}
+
+// Cube crosses, strips and mirror balls do not say what they are; their shape tells.
+void note_environment(Scene& scene) {
+  if (scene.environment.texture == kNone) return;
+  const Texture& map = scene.textures[static_cast<std::size_t>(scene.environment.texture)];
+  const std::size_t width = map.width(), height = map.height();
+  if (height < 8 || std::max(width, 2 * height) - std::min(width, 2 * height) <= height / 16)
+    return;
+  scene.warnings.push_back(fmt::format(
+      "{}: the environment's picture of {} x {} texels is stretched: one of latitude and longitude "
+      "is twice as wide as high",
+      scene.name, width, height));
 }
 
 void check_camera(const Camera& camera, std::size_t index, const std::string& file) {
@@ -156,6 +174,7 @@ void apply_overrides(const SceneOverrides& overrides, Scene& scene) {
   if (scene.cameras.empty()) scene.cameras.push_back(camera_for(scene));
   override_cameras(overrides, scene);
   override_lights(overrides, scene);
+  note_environment(scene);
   for (std::size_t i = 0; i < scene.cameras.size(); ++i)
     check_camera(scene.cameras[i], i, scene.name);
   if (!has_light(scene)) {

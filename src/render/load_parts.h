@@ -30,17 +30,20 @@ constexpr float kFarthest = 1e18f;
 // Loads each picture once, whatever the number of materials that want it.
 class TextureTable {
  public:
-  explicit TextureTable(Scene& scene) : scene_(scene) {}
-  // Index in Scene::textures. `file` is relative to the folder of `scene_file`; where that name
-  // does not exist, backslashes and another case are tried, as scenes from other systems have them.
-  // The error of a picture that cannot be had starts with `wanted_by`, "room.json:
-  // /materials/2/reflectance_map".
-  int load(const std::string& scene_file, const std::string& file, ColorSpace color_space,
+  // `lenient`: a picture that there is no reader for is left out with a note; a scene of another
+  // program need not know what psf reads.
+  explicit TextureTable(Scene& scene, bool lenient = false) : scene_(scene), lenient_(lenient) {}
+  // Index in Scene::textures; kNone for a picture that is left out. `file` is relative to the
+  // folder of `scene_file`; where that name does not exist, backslashes and another case are tried,
+  // as scenes from other systems have them. The error of a picture that cannot be had starts with
+  // `wanted_by`, "room.json: /materials/2/reflectance_map".
+  int load(const std::string& scene_file, const std::string& file, TextureUse use,
            const std::string& wanted_by);
 
  private:
   Scene& scene_;
-  std::map<std::pair<std::string, ColorSpace>, int> known_;
+  bool lenient_;
+  std::map<std::pair<std::string, TextureUse>, int> known_;
 };
 
 // `file` relative to the folder of `beside`, see TextureTable::load; unchanged where nothing like

@@ -80,7 +80,8 @@ struct Environment {
 struct Camera {
   std::string name;
   Vec3 eye{0, 0, 0}, target{0, 0, -1}, up{0, 1, 0};
-  float fov = 0.7f;  // horizontal field of view, radians
+  float fov = 0.7f;        // horizontal field of view, radians
+  float vertical_fov = 0;  // where above 0, fov follows from it and the shape of the picture
   std::uint32_t width = 512, height = 512;
   float lens_radius = 0;     // 0: pinhole
   float focus_distance = 1;  // along the view axis, used where lens_radius > 0
