@@ -86,6 +86,17 @@ void check_all_files(const RenderOptions& options, std::vector<std::string> outp
   check_files({options.scene, options.overrides.sky_map.value_or("")}, outputs);
 }
 
+// A dump whose vertices are all in one place has nothing to filter.
+void check_digits(const RenderOptions& options, const render::Scene& scene) {
+  const render::WorldDigits digits = render::world_digits(scene);
+  if (digits.steps() >= 1) return;
+  throw Error(ErrorCode::limit,
+              fmt::format("{}: the scene is {:.3g} across and {:.3g} from the origin, where the "
+                          "positions of a dump keep {:.3g} of a unit: its vertices would all be in "
+                          "one place; move the scene nearer, or write --image alone",
+                          options.scene, digits.across, digits.reach, digits.step));
+}
+
 // With --resume a file that is there goes on; one that is not is begun.
 formats::Writer open_writer(const RenderOptions& options, const formats::Head& head) {
   formats::WriterOptions writer_options;
@@ -107,7 +118,13 @@ void run(RenderOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const render::Scene scene = render::load_scene(options.scene, options.overrides);
   if (!options.common.quiet) {
-    for (const std::string& warning : scene.warnings) core::say("note: " + warning);
+    for (std::string warning : scene.warnings) {
+      // A name in a file may hold what ends a line or what a terminal obeys.
+      std::replace_if(
+          warning.begin(), warning.end(), [](unsigned char c) { return c < ' ' || c == 0x7F; },
+          '?');
+      core::say("note: " + warning);
+    }
   }
   auto& settings = options.settings;
   settings.producer = std::string("psf-render ") + kVersion;
@@ -123,6 +140,7 @@ void run(RenderOptions& options) {
   const PictureNames names(options.images, camera_names);
   check_all_files(options, names.all({}));
   if (!options.output.empty()) {
+    check_digits(options, scene);
     writer.emplace(open_writer(options, render::make_head(scene, *integrator, settings)));
   }
   const double prepared =

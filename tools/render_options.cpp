@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "core/output_file.h"
@@ -22,13 +23,16 @@ namespace {
 using render::Enumeration;
 using render::SamplerKind;
 
+constexpr const char* kColour = "three numbers R,G,B of at least 0 or one for grey";
+
 // "1,2,3"
-std::optional<Vec3> parse_triple(std::string_view text) {
-  Vec3 result;
+template <class T>
+std::optional<Imath::Vec3<T>> parse_triple(std::string_view text) {
+  Imath::Vec3<T> result;
   for (int k = 0; k < 3; ++k) {
     const std::size_t end = k < 2 ? text.find(',') : text.size();
     if (end == std::string_view::npos) return std::nullopt;
-    const auto number = parse_number<float>(text.substr(0, end));
+    const auto number = parse_number<T>(text.substr(0, end));
     if (!number) return std::nullopt;
     result[k] = *number;
     text.remove_prefix(std::min(end + 1, text.size()));
@@ -36,18 +40,28 @@ std::optional<Vec3> parse_triple(std::string_view text) {
   return result;
 }
 
-bool is_colour(const Vec3& v) {
-  return v.x >= 0 && v.y >= 0 && v.z >= 0;
+// "1,2,3", or one number for grey, of at least 0.
+std::optional<Vec3> parse_colour(std::string_view text) {
+  const auto grey = parse_number<float>(text);
+  const auto colour = grey ? std::optional(Vec3(*grey)) : parse_triple<float>(text);
+  if (!colour || !(colour->x >= 0 && colour->y >= 0 && colour->z >= 0)) return std::nullopt;
+  return colour;
 }
 
 template <class Target>
 CLI::Option* add_triple(CLI::App& app, const std::string& name, Target& target, bool colour,
                         const std::string& help) {
-  return add_parsed(app, name, colour ? "R,G,B" : "X,Y,Z",
-                    colour ? "three numbers R,G,B of at least 0" : "three numbers X,Y,Z", help,
+  return add_parsed(app, name, colour ? "R,G,B|GREY" : "X,Y,Z",
+                    colour ? kColour : "three numbers X,Y,Z", help,
                     [&target, colour](const std::string& text) {
-                      const auto triple = parse_triple(text);
-                      if (!triple || (colour && !is_colour(*triple))) return false;
+                      using Number = std::decay_t<decltype(target->x)>;
+                      std::optional<Imath::Vec3<Number>> triple;
+                      if (!colour) {
+                        triple = parse_triple<Number>(text);
+                      } else if (const auto c = parse_colour(text)) {
+                        triple.emplace(*c);
+                      }
+                      if (!triple) return false;
                       target.emplace(triple->x, triple->y, triple->z);
                       return true;
                     });
@@ -74,9 +88,8 @@ bool parse_shade_rate(const std::string& text, std::uint32_t& rate) {
 
 // A colour, or else the name of a picture; text made of numbers alone is never taken for a name.
 bool parse_sky(const std::string& text, render::SceneOverrides& overrides) {
-  if (const auto triple = parse_triple(text)) {
-    if (!is_colour(*triple)) return false;
-    overrides.sky.emplace(triple->x, triple->y, triple->z);
+  if (const auto colour = parse_colour(text)) {
+    overrides.sky.emplace(colour->x, colour->y, colour->z);
     return true;
   }
   if (text.find_first_not_of("0123456789.,+- ") == std::string::npos) return false;
@@ -186,7 +199,7 @@ void add_scene(CLI::App& app, RenderOptions& o) {
                return s.fov && *s.fov > 0 && *s.fov < 180;
              })
       ->group(kGroup);
-  add_parsed(app, "--sky", "R,G,B|FILE", "three numbers R,G,B of at least 0 or a picture",
+  add_parsed(app, "--sky", "R,G,B|GREY|FILE", std::string(kColour) + " or a picture",
              "radiance of the sky, or its equirectangular map",
              [&s](const std::string& text) { return parse_sky(text, s); })
       ->group(kGroup);

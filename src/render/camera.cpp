@@ -67,7 +67,8 @@ Ray CameraRays::ray(const Vec2& pixel, const Vec2& lens) const {
   return {eye_ + offset, (toward * focus_distance_ - offset).normalized()};
 }
 
-formats::CameraInfo CameraRays::info() const {
+formats::CameraInfo CameraRays::info(const Space& space) const {
+  const Imath::V3d eye = space.world(eye_);
   formats::CameraInfo info;
   info.name = name_;
   info.width = width_;
@@ -78,7 +79,7 @@ formats::CameraInfo CameraRays::info() const {
     info.camera_to_world[row] = double{right_[k]};
     info.camera_to_world[row + 1] = double{up_[k]};
     info.camera_to_world[row + 2] = double{back_[k]};
-    info.camera_to_world[row + 3] = double{eye_[k]};
+    info.camera_to_world[row + 3] = eye[k];
   }
   info.camera_to_world[15] = 1;
   info.projection[0] = 1 / double{scale_x_};

@@ -21,7 +21,8 @@ class CameraRays {
   [[nodiscard]] bool has_lens() const { return lens_radius_ > 0; }
   // The projection has an infinite far plane: clip = projection * camera_to_world^-1 * position,
   // x_pixel = (clip.x / clip.w + 1) / 2 * width, y_pixel = (1 - clip.y / clip.w) / 2 * height.
-  [[nodiscard]] formats::CameraInfo info() const;
+  // In world units; `space`: of the camera.
+  [[nodiscard]] formats::CameraInfo info(const Space& space = {}) const;
 
  private:
   std::string name_;

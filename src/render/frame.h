@@ -17,6 +17,27 @@ constexpr float kInvPi = std::numbers::inv_pi_v<float>;
   return v * (1 / std::sqrt(length_sq(v)));
 }
 
+// The unit normal of a triangle with these edges, and twice its area; zero where it has none. In
+// float, or where squares would not be floats, in double.
+struct TriangleNormal {
+  Vec3 normal{0, 0, 0};
+  float size = 0;
+
+  TriangleNormal(const Vec3& edge1, const Vec3& edge2) {
+    const Vec3 scaled = cross(edge1, edge2);
+    const float scaled_sq = length_sq(scaled);
+    if (scaled_sq > 1e-36f && scaled_sq < 1e38f) {
+      size = std::sqrt(scaled_sq);
+      normal = scaled * (1 / size);
+      return;
+    }
+    const Imath::V3d wide = Imath::V3d(edge1).cross(Imath::V3d(edge2));
+    const double wide_size = wide.length();
+    size = static_cast<float>(wide_size);
+    if (wide_size > 0) normal = Vec3(wide / wide_size);
+  }
+};
+
 // Local coordinates have n as z. Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
 struct Frame {
   explicit Frame(const Vec3& normal) : n(normal) {

@@ -11,6 +11,14 @@
 namespace psf::render {
 namespace {
 
+// componentType of an accessor.
+constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
+              kUnsignedInt = 5125, kFloat = 5126;
+
+std::size_t size_of(int component_type) {
+  return component_type <= kUnsignedByte ? 1 : component_type <= kUnsignedShort ? 2 : 4;
+}
+
 // One component at `bytes` as a number.
 double component_at(const unsigned char* bytes, int type, bool normalized) {
   const auto get = [&]<typename T>(T) {
@@ -21,17 +29,17 @@ double component_at(const unsigned char* bytes, int type, bool normalized) {
                     normalized ? -1.0 : std::numeric_limits<double>::lowest());
   };
   switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
+    case kByte:
       return get(std::int8_t{});
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+    case kUnsignedByte:
       return get(std::uint8_t{});
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
+    case kShort:
       return get(std::int16_t{});
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+    case kUnsignedShort:
       return get(std::uint16_t{});
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+    case kUnsignedInt:
       return get(std::uint32_t{});
-    default: {  // float
+    default: {
       float value = 0;
       std::memcpy(&value, bytes, sizeof value);
       return static_cast<double>(value);
@@ -45,138 +53,117 @@ struct Elements {
   std::size_t stride = 0, component_size = 0;
 };
 
-Elements elements(const GltfLoad& load, int buffer_view, std::size_t offset, std::size_t count,
-                  std::size_t components, int type, const std::string& place) {
-  const auto bytes = bytes_of(load, buffer_view, place);
-  const int size = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(type));
-  const bool known = type >= TINYGLTF_COMPONENT_TYPE_BYTE &&
-                     type <= TINYGLTF_COMPONENT_TYPE_FLOAT && type != TINYGLTF_COMPONENT_TYPE_INT &&
-                     size > 0;
-  if (!known) load.fail(place, fmt::format("componentType {} is none of glTF's", type));
+// Of the object that has "bufferView" and "byteOffset".
+Elements elements(GltfLoad& load, const JsonCursor& json, std::size_t count, std::size_t components,
+                  int type) {
+  const JsonCursor index = json.at("bufferView");
+  const auto bytes = bytes_of(load, index);
+  const JsonCursor view = load.element("bufferViews", index, "bufferView");
+  const auto offset_json = json.find("byteOffset"), stride = view.find("byteStride");
+  const std::uint64_t offset = offset_json ? offset_json->whole() : 0;
   Elements result;
-  result.component_size = static_cast<std::size_t>(size);
+  result.component_size = size_of(type);
   const std::size_t element = result.component_size * components;
-  const std::size_t stride =
-      load.model.bufferViews[static_cast<std::size_t>(buffer_view)].byteStride;
-  result.stride = stride == 0 ? element : stride;
-  if (result.stride < element) load.fail(place, "byteStride is smaller than an element");
+  result.stride = stride ? static_cast<std::size_t>(stride->whole(1 << 20)) : element;
+  if (result.stride < element)
+    stride->fail(fmt::format("is smaller than an element of {} bytes", element));
   const bool fits =
       count == 0 || (offset <= bytes.size() && element <= bytes.size() - offset &&
                      (count - 1) <= (bytes.size() - offset - element) / result.stride);
   if (!fits) {
-    load.fail(place, fmt::format("{} elements do not fit into the {} bytes of bufferView {}", count,
-                                 bytes.size(), buffer_view));
+    json.fail(fmt::format("{} elements do not fit into the {} bytes of bufferView {}", count,
+                          bytes.size(), index.whole()));
   }
   result.first = bytes.data() + offset;
   return result;
 }
 
-const tinygltf::Accessor& accessor_at(const GltfLoad& load, int index, const std::string& place) {
-  if (index < 0 || static_cast<std::size_t>(index) >= load.model.accessors.size()) {
-    load.fail(place, fmt::format("there is no accessor {}", index));
+struct Accessor {
+  JsonCursor json;
+  int type = kFloat;  // of components
+  bool normalized = false;
+  std::size_t count = 0, components = 0;
+};
+
+int component_type(const JsonCursor& json) {
+  const std::uint64_t type = json.whole();
+  const bool known = type >= kByte && type <= kFloat && type != 5124;
+  if (!known) json.fail(fmt::format("componentType {} is none of glTF's", type));
+  return static_cast<int>(type);
+}
+
+Accessor accessor_at(GltfLoad& load, const JsonCursor& index) {
+  static constexpr std::string_view kTypes[] = {"SCALAR", "VEC2", "VEC3", "VEC4",
+                                                "MAT2",   "MAT3", "MAT4"};
+  static constexpr std::size_t kComponents[] = {1, 2, 3, 4, 4, 9, 16};
+  Accessor a{load.element("accessors", index, "accessor")};
+  load.check_keys(a.json, {"bufferView", "byteOffset", "componentType", "normalized", "count",
+                           "type", "max", "min", "sparse"});
+  a.type = component_type(a.json.at("componentType"));
+  if (const auto normalized = a.json.find("normalized")) a.normalized = normalized->boolean();
+  a.components = kComponents[a.json.at("type").choice(kTypes)];
+  const std::uint64_t count = a.json.at("count").whole();
+  // Before anything is allocated: an accessor without bufferView may claim any count.
+  if (count > kMaxPrimitives * 3) {
+    throw Error(ErrorCode::limit, fmt::format("{}: {} elements are more than psf takes ({})",
+                                              a.json.where(), count, kMaxPrimitives * 3));
   }
-  return load.model.accessors[static_cast<std::size_t>(index)];
+  a.count = static_cast<std::size_t>(count);
+  return a;
 }
 
 // Calls store(element, component, value) for all of an accessor, the sparse ones afterwards.
 template <typename Store>
-void read(const GltfLoad& load, const tinygltf::Accessor& accessor, std::size_t components,
-          const std::string& place, Store store) {
+void read(GltfLoad& load, const Accessor& a, Store store) {
   const auto each = [&](const Elements& e, std::size_t count, auto target) {
     for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t c = 0; c < components; ++c) {
+      for (std::size_t c = 0; c < a.components; ++c) {
         store(target(i), c,
-              component_at(e.first + i * e.stride + c * e.component_size, accessor.componentType,
-                           accessor.normalized));
+              component_at(e.first + i * e.stride + c * e.component_size, a.type, a.normalized));
       }
     }
   };
-  if (accessor.bufferView >= 0) {
-    each(elements(load, accessor.bufferView, accessor.byteOffset, accessor.count, components,
-                  accessor.componentType, place),
-         accessor.count, [](std::size_t i) { return i; });
+  if (a.json.find("bufferView")) {
+    each(elements(load, a.json, a.count, a.components, a.type), a.count,
+         [](std::size_t i) { return i; });
   }
-  if (!accessor.sparse.isSparse) return;
-  const auto& sparse = accessor.sparse;
-  if (sparse.count < 0 || sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0) {
-    load.fail(place, "a negative number in \"sparse\"");
-  }
-  const auto count = static_cast<std::size_t>(sparse.count);
-  const Elements where =
-      elements(load, sparse.indices.bufferView, static_cast<std::size_t>(sparse.indices.byteOffset),
-               count, 1, sparse.indices.componentType, place);
-  const Elements what =
-      elements(load, sparse.values.bufferView, static_cast<std::size_t>(sparse.values.byteOffset),
-               count, components, accessor.componentType, place);
+  const auto sparse = a.json.find("sparse");
+  if (!sparse) return;
+  const auto count = static_cast<std::size_t>(sparse->at("count").whole());
+  const JsonCursor indices = sparse->at("indices");
+  const int index_type = component_type(indices.at("componentType"));
+  const Elements where = elements(load, indices, count, 1, index_type);
+  const Elements what = elements(load, sparse->at("values"), count, a.components, a.type);
   each(what, count, [&](std::size_t i) {
-    const double target =
-        component_at(where.first + i * where.stride, sparse.indices.componentType, false);
-    if (!(target >= 0 && target < static_cast<double>(accessor.count))) {
-      load.fail(place,
-                fmt::format("\"sparse\" names element {}, there are {}", target, accessor.count));
-    }
+    const double target = component_at(where.first + i * where.stride, index_type, false);
+    if (!(target >= 0 && target < static_cast<double>(a.count)))
+      indices.fail(fmt::format("names element {}, there are {}", target, a.count));
     return static_cast<std::size_t>(target);
   });
 }
 
-// Before anything is allocated: an accessor without bufferView may claim any count.
-void check_count(const GltfLoad& load, const tinygltf::Accessor& accessor,
-                 const std::string& place) {
-  if (accessor.count > kMaxPrimitives * 3) {
-    throw Error(ErrorCode::limit,
-                fmt::format("{}: {}: {} elements are more than psf takes ({})", load.path, place,
-                            accessor.count, kMaxPrimitives * 3));
-  }
-}
-
 }  // namespace
 
-std::span<const unsigned char> bytes_of(const GltfLoad& load, int buffer_view,
-                                        const std::string& place) {
-  const tinygltf::Model& model = load.model;
-  if (buffer_view < 0 || static_cast<std::size_t>(buffer_view) >= model.bufferViews.size()) {
-    load.fail(place, fmt::format("there is no bufferView {}", buffer_view));
+std::vector<float> read_floats(GltfLoad& load, const JsonCursor& index, std::size_t components) {
+  const Accessor a = accessor_at(load, index);
+  if (a.components != components) {
+    index.fail(fmt::format("accessor {} has {} components, expected {}", index.whole(),
+                           a.components, components));
   }
-  const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(buffer_view)];
-  if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model.buffers.size()) {
-    load.fail(fmt::format("/bufferViews/{}", buffer_view),
-              fmt::format("there is no buffer {}", view.buffer));
-  }
-  const auto& data = model.buffers[static_cast<std::size_t>(view.buffer)].data;
-  if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset) {
-    load.fail(fmt::format("/bufferViews/{}", buffer_view),
-              fmt::format("bytes {} to {} reach outside buffer {}, which has {}", view.byteOffset,
-                          view.byteOffset + view.byteLength, view.buffer, data.size()));
-  }
-  return {data.data() + view.byteOffset, view.byteLength};
-}
-
-std::vector<float> read_floats(const GltfLoad& load, int index, std::size_t components,
-                               const std::string& place) {
-  const tinygltf::Accessor& accessor = accessor_at(load, index, place);
-  const int found = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type));
-  if (found != static_cast<int>(components)) {
-    load.fail(place,
-              fmt::format("accessor {} has {} components, expected {}", index, found, components));
-  }
-  check_count(load, accessor, place);
-  std::vector<float> values(accessor.count * components);
-  read(load, accessor, components, place, [&](std::size_t i, std::size_t c, double value) {
+  std::vector<float> values(a.count * components);
+  read(load, a, [&](std::size_t i, std::size_t c, double value) {
     values[i * components + c] = static_cast<float>(value);
   });
   return values;
 }
 
-std::vector<std::uint32_t> read_indices(const GltfLoad& load, int index, const std::string& place) {
-  const tinygltf::Accessor& accessor = accessor_at(load, index, place);
-  if (accessor.type != TINYGLTF_TYPE_SCALAR ||
-      accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT) {
-    load.fail(place, fmt::format("accessor {} does not hold indices", index));
-  }
-  check_count(load, accessor, place);
-  std::vector<std::uint32_t> values(accessor.count);
-  read(load, accessor, 1, place, [&](std::size_t i, std::size_t, double value) {
-    if (value < 0) load.fail(place, fmt::format("index {} is negative", i));
+std::vector<std::uint32_t> read_indices(GltfLoad& load, const JsonCursor& index) {
+  const Accessor a = accessor_at(load, index);
+  if (a.components != 1 || a.type == kFloat)
+    index.fail(fmt::format("accessor {} does not hold indices", index.whole()));
+  std::vector<std::uint32_t> values(a.count);
+  read(load, a, [&](std::size_t i, std::size_t, double value) {
+    if (value < 0) index.fail(fmt::format("index {} is negative", i));
     values[i] = static_cast<std::uint32_t>(value);
   });
   return values;

@@ -1,9 +1,9 @@
-// What the nodes of a glTF file carry: triangles, cameras, lights.
+// Triangles of a glTF file, and where EXT_mesh_gpu_instancing puts them.
+#include <ImathQuat.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "formats/error.h"
 #include "render/gltf_parts.h"
@@ -12,14 +12,16 @@
 namespace psf::render {
 namespace {
 
+constexpr std::uint64_t kTriangles = 4, kStrip = 5, kFan = 6;
+
 std::vector<std::array<std::uint32_t, 3>> to_triangles(const std::vector<std::uint32_t>& indices,
-                                                       int mode) {
+                                                       std::uint64_t mode) {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   const std::size_t count = indices.size();
-  if (mode == TINYGLTF_MODE_TRIANGLES) {
+  if (mode == kTriangles) {
     for (std::size_t i = 0; i + 2 < count; i += 3)
       triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
-  } else if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
+  } else if (mode == kStrip) {
     for (std::size_t i = 0; i + 2 < count; ++i) {
       // Every other triangle of a strip is turned.
       triangles.push_back({indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]});
@@ -31,174 +33,161 @@ std::vector<std::array<std::uint32_t, 3>> to_triangles(const std::vector<std::ui
   return triangles;
 }
 
-// KHR_texture_transform: scale, then rotation, then offset, in glTF's texture space (v down).
-void transform_uvs(const tinygltf::Value& extension, std::vector<Vec2>& uvs) {
-  const auto pair = [&](const char* key, float otherwise) {
-    if (!extension.Has(key)) return Vec2(otherwise);
-    const tinygltf::Value& v = extension.Get(key);
-    if (!v.IsArray() || v.ArrayLen() != 2) return Vec2(otherwise);
-    return Vec2(static_cast<float>(v.Get(0).GetNumberAsDouble()),
-                static_cast<float>(v.Get(1).GetNumberAsDouble()));
-  };
-  const Vec2 offset = pair("offset", 0), scale = pair("scale", 1);
-  const auto rotation = static_cast<float>(number_or(extension, "rotation", 0));
-  const float c = std::cos(rotation), s = std::sin(rotation);
-  for (Vec2& uv : uvs) {
-    const Vec2 p = uv * scale;
-    uv = Vec2(c * p.x + s * p.y, c * p.y - s * p.x) + offset;
+// The texture coordinates that the primitive's material asks for: KHR_texture_transform scales,
+// then turns, then moves, in glTF's texture space (v down).
+void read_uvs(GltfLoad& load, const JsonCursor& primitive, Mesh& mesh) {
+  GltfCoordinates from;
+  if (const auto material = primitive.find("material"))
+    from = load.coordinates.at(static_cast<std::size_t>(material->whole()));
+  const std::string name = fmt::format("TEXCOORD_{}", from.set);
+  const auto accessor = primitive.at("attributes").find(name);
+  if (!accessor) return;
+  const auto values = read_floats(load, *accessor, 2);
+  const float c = std::cos(from.rotation), s = std::sin(from.rotation);
+  mesh.uvs.reserve(values.size() / 2);
+  for (std::size_t i = 0; i + 1 < values.size(); i += 2) {
+    const Vec2 p = Vec2(values[i], values[i + 1]) * from.scale;
+    const Vec2 uv = Vec2(c * p.x + s * p.y, c * p.y - s * p.x) + from.offset;
+    mesh.uvs.emplace_back(uv.x, 1 - uv.y);
   }
-}
-
-// The texture coordinates that the primitive's material asks for.
-void read_uvs(GltfLoad& load, const tinygltf::Primitive& primitive, const std::string& place,
-              Mesh& mesh) {
-  int set = 0;
-  const tinygltf::Value* extension = nullptr;
-  if (primitive.material >= 0) {
-    const tinygltf::Material& material =
-        load.model.materials[static_cast<std::size_t>(primitive.material)];
-    const auto& pbr = material.pbrMetallicRoughness;
-    bool first = true;
-    for (const tinygltf::TextureInfo* info :
-         {&pbr.baseColorTexture, &pbr.metallicRoughnessTexture, &material.emissiveTexture}) {
-      if (info->index < 0) continue;
-      const tinygltf::Value* transform = find_extension(info->extensions, "KHR_texture_transform");
-      if (first) {
-        set = info->texCoord;
-        extension = transform;
-      } else if (info->texCoord != set || (transform == nullptr) != (extension == nullptr)) {
-        load.warn_once("textures of one material share the coordinates of the first");
-      }
-      first = false;
-    }
-  }
-  const std::string name = fmt::format("TEXCOORD_{}", set);
-  const auto found = primitive.attributes.find(name);
-  if (found == primitive.attributes.end()) return;
-  const auto values = read_floats(load, found->second, 2, place + "/attributes/" + name);
-  for (std::size_t i = 0; i + 1 < values.size(); i += 2)
-    mesh.uvs.emplace_back(values[i], values[i + 1]);
-  if (extension) transform_uvs(*extension, mesh.uvs);
-  for (Vec2& uv : mesh.uvs) uv.y = 1 - uv.y;
   if (mesh.uvs.size() != mesh.positions.size())
-    load.fail(place, name + " and POSITION have different counts");
+    accessor->fail(name + " and POSITION have different counts");
 }
 
-void read_vectors(const GltfLoad& load, const tinygltf::Primitive& primitive, const char* name,
-                  const std::string& place, std::vector<Vec3>& out) {
-  const auto found = primitive.attributes.find(name);
-  if (found == primitive.attributes.end()) return;
-  const auto values = read_floats(load, found->second, 3, place + "/attributes/" + name);
-  out.reserve(values.size() / 3);
+std::vector<Vec3> read_vectors(GltfLoad& load, const JsonCursor& accessor) {
+  const auto values = read_floats(load, accessor, 3);
+  std::vector<Vec3> vectors;
+  vectors.reserve(values.size() / 3);
   for (std::size_t i = 0; i + 2 < values.size(); i += 3)
-    out.emplace_back(values[i], values[i + 1], values[i + 2]);
+    vectors.emplace_back(values[i], values[i + 1], values[i + 2]);
+  return vectors;
 }
 
-void add_primitive(GltfLoad& load, const tinygltf::Primitive& primitive, const std::string& name,
-                   const Mat4& to_world, const std::string& place) {
-  const int mode = primitive.mode == -1 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
-  if (mode < TINYGLTF_MODE_TRIANGLES || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
-    return load.warn_once("points and lines are left out");
+void note_attributes(GltfLoad& load, const JsonCursor& primitive) {
+  const std::string place = primitive.path();
+  if (const auto targets = primitive.find("targets"); targets && targets->size() > 0)
+    load.leave_out("morph targets are left out", place);
+  for (const std::string& key : primitive.at("attributes").keys()) {
+    if (key.starts_with("COLOR_")) load.leave_out("vertex colours are left out", place);
   }
-  if (!primitive.targets.empty()) load.warn_once("morph targets are left out");
-  if (primitive.attributes.count("COLOR_0") > 0) load.warn_once("vertex colours are left out");
+}
+
+void add_primitive(GltfLoad& load, const JsonCursor& primitive, const std::string& name,
+                   std::span<const Imath::M44d> placements) {
+  load.check_keys(primitive, {"attributes", "indices", "material", "mode", "targets"});
+  const JsonCursor attributes = primitive.at("attributes");
+  const auto mode_json = primitive.find("mode");
+  const std::uint64_t mode = mode_json ? mode_json->whole() : kTriangles;
+  if (mode > kFan) mode_json->fail(fmt::format("mode {} is none of glTF's", mode));
+  if (mode < kTriangles) return load.leave_out("points and lines are left out", primitive.path());
+  note_attributes(load, primitive);
   Mesh mesh;
   mesh.name = name;
-  mesh.material = gltf_material(load, primitive.material, place);
-  read_vectors(load, primitive, "POSITION", place, mesh.positions);
-  if (mesh.positions.empty()) return load.warn_once("primitives without positions are left out");
-  read_vectors(load, primitive, "NORMAL", place, mesh.normals);
-  if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size()) {
-    load.fail(place, "NORMAL and POSITION have different counts");
+  mesh.material = gltf_material(load, primitive);
+  const auto positions = attributes.find("POSITION");
+  if (!positions)
+    return load.leave_out("primitives without positions are left out", primitive.path());
+  if (find_extension(primitive, "KHR_draco_mesh_compression") &&
+      !load.element("accessors", *positions, "accessor").find("bufferView")) {
+    primitive.fail("needs KHR_draco_mesh_compression, which psf does not have; export it without");
   }
-  read_uvs(load, primitive, place, mesh);
+  mesh.positions = read_vectors(load, *positions);
+  if (const auto normals = attributes.find("NORMAL")) {
+    mesh.normals = read_vectors(load, *normals);
+    if (mesh.normals.size() != mesh.positions.size())
+      normals->fail("NORMAL and POSITION have different counts");
+  }
+  read_uvs(load, primitive, mesh);
 
   std::vector<std::uint32_t> indices;
-  if (primitive.indices >= 0) {
-    indices = read_indices(load, primitive.indices, place + "/indices");
+  if (const auto accessor = primitive.find("indices")) {
+    indices = read_indices(load, *accessor);
   } else {
     indices.resize(mesh.positions.size());
     for (std::size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<std::uint32_t>(i);
   }
+  if (indices.size() < 3 || (mode == kTriangles && indices.size() % 3 != 0))
+    load.leave_out("vertices that are too few for a triangle are left out", primitive.path());
   mesh.triangles = to_triangles(indices, mode);
-  try {
-    transform(mesh, to_world);
-  } catch (const Error& error) {
-    load.fail(place, error.what());
+  if (mesh.triangles.size() > (kMaxPrimitives - load.triangles) / placements.size() ||
+      mesh.positions.size() > UINT32_MAX / placements.size()) {
+    throw Error(
+        ErrorCode::limit,
+        fmt::format("{}: {} copies of {} triangles are more than psf takes ({} in a scene)",
+                    primitive.where(), placements.size(), mesh.triangles.size(), kMaxPrimitives));
   }
-  load.scene.meshes.push_back(std::move(mesh));
-}
-
-// The image of a direction, unit.
-Vec3 turn(const Mat4& m, const Vec3& direction) {
-  Vec3 turned;
-  m.multDirMatrix(direction, turned);
-  return turned.normalized();
-}
-
-Vec3 place_of(const Mat4& m) {
-  return {m[3][0], m[3][1], m[3][2]};
+  load.triangles += mesh.triangles.size() * placements.size();
+  Mesh all;
+  all.name = name;
+  all.material = mesh.material;
+  for (const Imath::M44d& placement : placements) {
+    Mesh copy = mesh;
+    try {
+      transform(copy, placement);
+    } catch (const Error& error) {
+      primitive.fail(error.what());
+    }
+    append(all, copy);
+  }
+  load.scene.meshes.push_back(std::move(all));
 }
 
 }  // namespace
 
-void add_gltf_mesh(GltfLoad& load, int index, const std::string& name, const Mat4& to_world,
-                   const std::string& place) {
-  if (static_cast<std::size_t>(index) >= load.model.meshes.size()) {
-    load.fail(place, fmt::format("there is no mesh {}", index));
-  }
-  const tinygltf::Mesh& mesh = load.model.meshes[static_cast<std::size_t>(index)];
-  for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
-    const std::string part = mesh.primitives.size() == 1 ? name : fmt::format("{}/{}", name, i);
-    add_primitive(load, mesh.primitives[i], part, to_world,
-                  fmt::format("/meshes/{}/primitives/{}", index, i));
+void add_gltf_mesh(GltfLoad& load, const JsonCursor& index, const std::string& name,
+                   std::span<const Imath::M44d> placements) {
+  const JsonCursor mesh = load.element("meshes", index, "mesh");
+  load.check_keys(mesh, {"primitives", "weights"});
+  const JsonCursor primitives = mesh.at("primitives");
+  if (placements.empty()) return;
+  for (std::size_t i = 0; i < primitives.size(); ++i) {
+    add_primitive(load, primitives.item(i),
+                  primitives.size() == 1 ? name : fmt::format("{}/{}", name, i), placements);
   }
 }
 
-void add_gltf_camera(GltfLoad& load, int index, const std::string& name, const Mat4& to_world,
-                     const std::string& place) {
-  if (static_cast<std::size_t>(index) >= load.model.cameras.size()) {
-    load.fail(place, fmt::format("there is no camera {}", index));
-  }
-  const tinygltf::Camera& gltf = load.model.cameras[static_cast<std::size_t>(index)];
-  if (gltf.type != "perspective") return load.warn_once("orthographic cameras are left out");
-  const double aspect = gltf.perspective.aspectRatio > 0 ? gltf.perspective.aspectRatio : 1.0;
-  Camera camera;
-  camera.name = gltf.name.empty() ? name : gltf.name;
-  camera.eye = place_of(to_world);
-  camera.target = camera.eye + turn(to_world, {0, 0, -1});
-  camera.up = turn(to_world, {0, 1, 0});
-  camera.fov = static_cast<float>(2 * std::atan(std::tan(gltf.perspective.yfov / 2) * aspect));
-  camera.height =
-      static_cast<std::uint32_t>(std::lround(std::clamp(camera.width / aspect, 1.0, 65536.0)));
-  load.scene.cameras.push_back(std::move(camera));
+Imath::M44d gltf_matrix(const Imath::V3d& scale, std::span<const double, 4> rotation,
+                        const Imath::V3d& translation) {
+  Imath::M44d m;
+  m.setScale(scale);
+  m *= Imath::Quatd(rotation[3], rotation[0], rotation[1], rotation[2]).normalized().toMatrix44();
+  return m * Imath::M44d().setTranslation(translation);
 }
 
-void add_gltf_light(GltfLoad& load, int index, const Mat4& to_world, const std::string& place) {
-  if (index < 0 || static_cast<std::size_t>(index) >= load.model.lights.size()) {
-    load.fail(place, fmt::format("there is no light {}", index));
+std::vector<Imath::M44d> gltf_instances(GltfLoad& load, const JsonCursor& extension) {
+  load.check_keys(extension, {"attributes"});
+  const JsonCursor attributes = extension.at("attributes");
+  std::optional<std::size_t> count;
+  const auto read = [&](const char* key, std::size_t components) {
+    const auto accessor = attributes.find(key);
+    if (!accessor) return std::vector<float>{};
+    auto values = read_floats(load, *accessor, components);
+    const std::size_t own = values.size() / components;
+    if (count.value_or(own) != own) accessor->fail("the attributes have different counts");
+    for (const float value : values) {
+      if (!std::isfinite(value))
+        accessor->fail(std::string(key) + " has numbers that are not finite");
+    }
+    count = own;
+    return values;
+  };
+  const auto translation = read("TRANSLATION", 3), rotation = read("ROTATION", 4),
+             scale = read("SCALE", 3);
+  if (count.value_or(1) > kMaxCopies) {
+    throw Error(ErrorCode::limit, fmt::format("{}: {} copies are more than psf takes ({})",
+                                              extension.where(), *count, kMaxCopies));
   }
-  const tinygltf::Light& gltf = load.model.lights[static_cast<std::size_t>(index)];
-  Light light;
-  light.name = gltf.name.empty() ? fmt::format("light {}", index) : gltf.name;
-  light.position = place_of(to_world);
-  light.direction = turn(to_world, {0, 0, -1});
-  const auto color = [&](std::size_t i) { return i < gltf.color.size() ? gltf.color[i] : 1.0; };
-  for (int i = 0; i < 3; ++i) {
-    light.intensity[i] = static_cast<float>(color(static_cast<std::size_t>(i)) * gltf.intensity);
+  std::vector<Imath::M44d> placements(count.value_or(1));
+  for (std::size_t i = 0; i < placements.size(); ++i) {
+    const auto vector = [&](const std::vector<float>& values, double otherwise) {
+      return values.empty() ? Imath::V3d(otherwise)
+                            : Imath::V3d(Vec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]));
+    };
+    std::array<double, 4> turn = {0, 0, 0, 1};
+    for (std::size_t k = 0; k < 4 && !rotation.empty(); ++k) turn[k] = double{rotation[4 * i + k]};
+    placements[i] = gltf_matrix(vector(scale, 1), turn, vector(translation, 0));
   }
-  if (gltf.type == "directional") {
-    light.kind = LightKind::directional;
-  } else if (gltf.type == "spot") {
-    light.kind = LightKind::spot;
-    const double outer = std::clamp(gltf.spot.outerConeAngle, 1e-4, std::numbers::pi / 2);
-    light.cos_inner =
-        static_cast<float>(std::cos(std::clamp(gltf.spot.innerConeAngle, 0.0, outer)));
-    light.cos_outer = static_cast<float>(std::cos(outer));
-  } else if (gltf.type != "point") {
-    load.fail(place, fmt::format("light {} is of the unknown type \"{}\"", index, gltf.type));
-  }
-  load.scene.lights.push_back(std::move(light));
+  return placements;
 }
 
 }  // namespace psf::render

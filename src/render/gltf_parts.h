@@ -1,57 +1,123 @@
 // The parts of the glTF loader.
 #pragma once
 
-#include <tiny_gltf.h>
-
 #include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "render/json_cursor.h"
 #include "render/load_parts.h"
 #include "render/scene.h"
 
 namespace psf::render {
 
-// A glTF file while it is read. Errors name the file and a JSON path in it.
-struct GltfLoad {
-  std::string path;
-  tinygltf::Model model;
-  Scene& scene;
-  TextureTable files;  // pictures that lie beside the file
-  std::vector<std::array<int, 2>>
-      images;                    // of each image: index in Scene::textures as sRGB and as linear
-  int first_material = 0;        // of the file, in Scene::materials
-  int default_material = kNone;  // for primitives without one, made when first needed
-
-  [[noreturn]] void fail(const std::string& place, const std::string& problem) const;
-  void warn_once(const std::string& what);
+// Where a material takes its texture coordinates from: a set of the mesh and KHR_texture_transform.
+struct GltfCoordinates {
+  std::uint64_t set = 0;
+  Vec2 offset{0, 0}, scale{1, 1};
+  float rotation = 0;  // radians
+  bool operator==(const GltfCoordinates&) const = default;
 };
 
-// The bytes of a buffer view; throws where it reaches outside its buffer.
-[[nodiscard]] std::span<const unsigned char> bytes_of(const GltfLoad& load, int buffer_view,
-                                                      const std::string& place);
-// (count, components) of an accessor as floats; normalised integers become [0, 1] or [-1, 1].
-// `components`: what the accessor must have.
-[[nodiscard]] std::vector<float> read_floats(const GltfLoad& load, int accessor,
-                                             std::size_t components, const std::string& place);
-[[nodiscard]] std::vector<std::uint32_t> read_indices(const GltfLoad& load, int accessor,
-                                                      const std::string& place);
+// A glTF file while it is read. Errors name the file and a JSON pointer in it.
+struct GltfLoad {
+  std::string path;
+  Scene& scene;
+  std::shared_ptr<const nlohmann::json> document;
+  std::vector<unsigned char> chunk;                           // the binary one of a GLB
+  std::map<std::size_t, std::vector<unsigned char>> buffers;  // those that were asked for
+  // Of each picture and use: index in Scene::textures, kNone where psf does not read it.
+  std::map<std::pair<std::size_t, TextureUse>, int> images;
+  std::vector<GltfCoordinates> coordinates;  // of each material of the file
+  int first_material = 0;                    // of the file, in Scene::materials
+  int default_material = kNone;              // for primitives without one, made when first needed
+  std::size_t triangles = 0;                 // so far
 
-// An object in the extensions of something, or null.
-[[nodiscard]] const tinygltf::Value* find_extension(const tinygltf::ExtensionMap& extensions,
-                                                    const char* name);
-[[nodiscard]] double number_or(const tinygltf::Value& object, const char* key, double otherwise);
+  GltfLoad(std::string file, Scene& target) : path(std::move(file)), scene(target) {}
+
+  [[nodiscard]] JsonCursor root() const { return JsonCursor(*document, path); }
+  // The element of the file's array `array` that `index` names; `kind` is the word for it.
+  [[nodiscard]] JsonCursor element(const char* array, const JsonCursor& index,
+                                   const char* kind) const;
+
+  // Notes that `what` is left out at `where`. Each `what` becomes one line, whatever the number of
+  // places.
+  void leave_out(const std::string& what, const std::string& where);
+  // Notes the keys that glTF does not have, which are often typing errors; "name", "extras" and
+  // "extensions" are known everywhere.
+  void check_keys(const JsonCursor& object, std::initializer_list<std::string_view> known);
+  // Puts the notes into the scene's warnings.
+  void tell();
+
+ private:
+  struct Note {
+    std::string what, first;
+    std::set<std::string> places;
+  };
+  std::vector<Note> notes_;
+};
+
+// The pointer to an object and, where it has one, its name: "/materials/3 (oak)".
+[[nodiscard]] std::string gltf_place(const JsonCursor& object);
+// The name of an object, or "kind N".
+[[nodiscard]] std::string gltf_name(const JsonCursor& object, const char* kind, std::size_t index);
+// The first three of some numbers.
+[[nodiscard]] inline Rgb to_rgb(std::span<const double> v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+// An extension of an object.
+[[nodiscard]] std::optional<JsonCursor> find_extension(const JsonCursor& object, const char* name);
+
+// The JSON and the binary chunk of the file. Throws Error{bad_input} for what is no glTF 2.0.
+void read_gltf_file(GltfLoad& load);
+// Throws Error{bad_input} naming the extension that the file needs and psf lacks; notes those that
+// are left out.
+void check_gltf_extensions(GltfLoad& load);
+
+// The bytes of the buffer view of this index; throws where it reaches outside its buffer.
+[[nodiscard]] std::span<const unsigned char> bytes_of(GltfLoad& load,
+                                                      const JsonCursor& buffer_view);
+[[nodiscard]] bool is_data_uri(const std::string& uri);
+// "a data URI of image/png", or the start of the URI in quotes: for messages.
+[[nodiscard]] std::string brief_uri(const std::string& uri);
+[[nodiscard]] std::vector<unsigned char> decode_data_uri(const JsonCursor& uri);
+// The file that a URI names beside the glTF file, its percent escapes decoded.
+[[nodiscard]] std::string file_of_uri(const GltfLoad& load, const JsonCursor& uri);
+
+// (count, components) of the accessor of this index as floats; normalised integers become [0, 1] or
+// [-1, 1]. `components`: what the accessor must have.
+[[nodiscard]] std::vector<float> read_floats(GltfLoad& load, const JsonCursor& accessor,
+                                             std::size_t components);
+[[nodiscard]] std::vector<std::uint32_t> read_indices(GltfLoad& load, const JsonCursor& accessor);
+
+// Index in Scene::textures of what a texture info names; kNone, with a note, where psf cannot have
+// it. `wanted_by`: material and slot, for messages.
+[[nodiscard]] int gltf_texture(GltfLoad& load, const JsonCursor& info, TextureUse use,
+                               const std::string& wanted_by);
+[[nodiscard]] GltfCoordinates gltf_coordinates(GltfLoad& load, const JsonCursor& info);
 
 // All materials of the file, in its order, with their textures.
 void add_gltf_materials(GltfLoad& load);
 // Index in Scene::materials; the default of glTF where the primitive has none.
-[[nodiscard]] int gltf_material(GltfLoad& load, int material, const std::string& place);
-// The light, camera or triangles of a node in world space.
-void add_gltf_light(GltfLoad& load, int light, const Mat4& to_world, const std::string& place);
-void add_gltf_camera(GltfLoad& load, int camera, const std::string& name, const Mat4& to_world,
-                     const std::string& place);
-void add_gltf_mesh(GltfLoad& load, int mesh, const std::string& name, const Mat4& to_world,
-                   const std::string& place);
+[[nodiscard]] int gltf_material(GltfLoad& load, const JsonCursor& primitive);
+
+// The light, camera or triangles that the number `index` of a node names; `to_scene`: from the node
+// to the scene's space, in double and rounded once. Triangles come once for each of `placements`.
+void add_gltf_light(GltfLoad& load, const JsonCursor& index, const Imath::M44d& to_scene);
+void add_gltf_camera(GltfLoad& load, const JsonCursor& index, const std::string& name,
+                     const Imath::M44d& to_scene);
+void add_gltf_mesh(GltfLoad& load, const JsonCursor& index, const std::string& name,
+                   std::span<const Imath::M44d> placements);
+// Scale, then rotation (a quaternion x, y, z, w), then translation.
+[[nodiscard]] Imath::M44d gltf_matrix(const Imath::V3d& scale, std::span<const double, 4> rotation,
+                                      const Imath::V3d& translation);
+// Where a node of EXT_mesh_gpu_instancing puts its mesh, in its own space.
+[[nodiscard]] std::vector<Imath::M44d> gltf_instances(GltfLoad& load, const JsonCursor& extension);
 
 }  // namespace psf::render

@@ -14,8 +14,17 @@ const std::vector<std::string>& integrator_names() {
   return names;
 }
 
-std::unique_ptr<Integrator> make_integrator(const Scene& scene,
-                                            const IntegratorSettings& settings) {
+PathRecord in_world(PathRecord record, const Space& space) {
+  if (space.is_world()) return record;
+  record.position = Vec3(space.world(record.position));
+  record.distance = space.world_length(record.distance);
+  record.hit_distance = space.world_length(record.hit_distance);
+  return record;
+}
+
+std::unique_ptr<Integrator> make_integrator(const Scene& scene, const IntegratorSettings& given) {
+  IntegratorSettings settings = given;
+  settings.ao_distance = scene.space.local_length(double{given.ao_distance});
   if (settings.split < 1 || settings.max_depth < 1 || !(settings.ao_distance > 0)) {
     throw Error(ErrorCode::usage, "split, max depth and AO distance must be positive");
   }

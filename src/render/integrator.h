@@ -43,17 +43,18 @@ struct Ray {
 };
 
 // Everything the path-vertex buffer keeps of one path; the symbols are those of
-// src/filter/README.md.
+// src/filter/README.md. An integrator's lengths are those of the scene's space, the file's those of
+// the world.
 struct PathRecord {
   bool has_vertex = false;    // x_i exists
   bool shaded = false;        // c_i was computed
-  Vec3 position{0, 0, 0};     // x_i, world units
+  Vec3 position{0, 0, 0};     // x_i
   Vec3 normal{0, 0, 0};       // n_i, unit shading normal on the side of the camera
   Rgb reflectance{0, 0, 0};   // rho_i, albedo
   Rgb throughput{0, 0, 0};    // alpha_i, of the camera segment up to x_i
   Rgb contribution{0, 0, 0};  // c_i, radiance scattered at x_i toward the camera, without emission
   Rgb unfiltered{0, 0, 0};    // u_i
-  float distance = 0;         // d_i, length of the camera segment, world units
+  float distance = 0;         // d_i, length of the camera segment
   std::uint32_t visibility = 0;  // bit l mod 32 set: light l was seen from x_i
   float hit_distance =
       0;  // length of the first ray scattered from x_i; infinity for a miss or absorption
@@ -62,6 +63,9 @@ struct PathRecord {
   float roughness = 0;         // perceptual; 1 for diffuse
 };
 
+// The record of a path in a scene of this space, in world units.
+[[nodiscard]] PathRecord in_world(PathRecord record, const Space& space);
+
 struct IntegratorSettings {
   std::string name = "path";  // path, direct, ao
   int max_depth = 16;         // most surface interactions a path, the camera segment's included
@@ -69,8 +73,8 @@ struct IntegratorSettings {
   float vertex_roughness =
       0.3f;                 // x_i: the first vertex with perceptual roughness of at least this
   std::uint32_t split = 1;  // continuations from x_i, averaged into c_i
-  float ao_distance =
-      std::numeric_limits<float>::infinity();  // ao: farther surfaces do not occlude
+  // ao: farther surfaces do not occlude; world units
+  float ao_distance = std::numeric_limits<float>::infinity();
 };
 
 class Integrator {

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
 
@@ -80,8 +82,10 @@ json read_json(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file)
     throw Error(ErrorCode::io, fmt::format("{}: cannot open: {}", path, std::strerror(errno)));
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  return parse_json({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}, path);
+}
 
+json parse_json(const std::string& text, const std::string& path) {
   std::vector<std::set<std::string>> keys;  // of the objects around the current place
   std::string doubled;
   const auto watch = [&](int, json::parse_event_t event, json& parsed) {
@@ -106,8 +110,13 @@ json read_json(const std::string& path) {
                 fmt::format("{}:{}: malformed JSON: {}", path, line_and_column(text, offset),
                             reason(error.what())));
   } catch (const json::exception& error) {
-    throw Error(ErrorCode::bad_input,
-                fmt::format("{}: malformed JSON: {}", path, reason(error.what())));
+    // A number out of range has no place, but its text is in the message, in quotes.
+    const std::string what = reason(error.what());
+    const std::size_t begin = what.find('\'') + 1, end = what.rfind('\'');
+    const bool quoted = begin > 0 && end > begin;
+    const std::size_t offset = quoted ? text.find(what.substr(begin, end - begin)) : 0;
+    throw Error(ErrorCode::bad_input, fmt::format("{}:{}: malformed JSON: {}", path,
+                                                  line_and_column(text, offset), what));
   }
 }
 
@@ -140,13 +149,36 @@ JsonCursor JsonCursor::at(std::string_view key) const {
   return *found;
 }
 
-std::vector<JsonCursor> JsonCursor::items() const {
+bool JsonCursor::is_array() const {
+  return value_->is_array();
+}
+bool JsonCursor::is_object() const {
+  return value_->is_object();
+}
+bool JsonCursor::is_text() const {
+  return value_->is_string();
+}
+
+std::size_t JsonCursor::size() const {
   if (!value_->is_array()) expected("an array");
+  return value_->size();
+}
+
+JsonCursor JsonCursor::item(std::size_t index) const {
+  return JsonCursor((*value_)[index], file_, fmt::format("{}/{}", path_, index));
+}
+
+std::vector<std::string> JsonCursor::keys() const {
+  if (!value_->is_object()) expected("an object");
+  std::vector<std::string> result;
+  for (const auto& [key, value] : value_->items()) result.push_back(key);
+  return result;
+}
+
+std::vector<JsonCursor> JsonCursor::items() const {
   std::vector<JsonCursor> result;
-  result.reserve(value_->size());
-  for (std::size_t i = 0; i < value_->size(); ++i) {
-    result.push_back(JsonCursor((*value_)[i], file_, fmt::format("{}/{}", path_, i)));
-  }
+  result.reserve(size());
+  for (std::size_t i = 0; i < value_->size(); ++i) result.push_back(item(i));
   return result;
 }
 
@@ -156,9 +188,13 @@ std::vector<JsonCursor> JsonCursor::items(std::string_view key) const {
 }
 
 float JsonCursor::number(const Range& range) const {
+  return static_cast<float>(real(range));
+}
+
+double JsonCursor::real(const Range& range) const {
   const double value = value_->is_number() ? value_->get<double>() : 2 * range.max;
   if (!(value >= range.min && value <= range.max)) expected(fmt::format("a number {}", range.text));
-  return static_cast<float>(value);
+  return value;
 }
 
 std::uint32_t JsonCursor::integer(std::uint32_t min, std::uint32_t max) const {
@@ -166,6 +202,13 @@ std::uint32_t JsonCursor::integer(std::uint32_t min, std::uint32_t max) const {
                     value_->get<std::uint64_t>() <= max;
   if (!fits) expected(fmt::format("a whole number from {} to {}", min, max));
   return value_->get<std::uint32_t>();
+}
+
+std::uint64_t JsonCursor::whole(std::uint64_t max) const {
+  const double value = value_->is_number() ? value_->get<double>() : -1;
+  const bool fits = value >= 0 && value <= static_cast<double>(max) && value == std::floor(value);
+  if (!fits) expected(fmt::format("a whole number from 0 to {}", max));
+  return static_cast<std::uint64_t>(value);
 }
 
 bool JsonCursor::boolean() const {
@@ -187,7 +230,7 @@ std::size_t JsonCursor::choice(std::span<const std::string_view> known) const {
   return static_cast<std::size_t>(found - known.begin());
 }
 
-void JsonCursor::read_numbers(std::span<float> out, const Range& range) const {
+void JsonCursor::read_numbers(std::span<double> out, const Range& range) const {
   if (!value_->is_array() || value_->size() != out.size()) {
     expected(fmt::format("an array of {} numbers", out.size()));
   }
@@ -198,18 +241,22 @@ void JsonCursor::read_numbers(std::span<float> out, const Range& range) const {
       JsonCursor(item, file_, fmt::format("{}/{}", path_, i))
           .expected(fmt::format("a number {}", range.text));
     }
-    out[i] = static_cast<float>(value);
+    out[i] = value;
   }
 }
 
 Vec2 JsonCursor::vec2(const Range& range) const {
-  std::array<float, 2> v{};
+  std::array<double, 2> v{};
   read_numbers(v, range);
-  return {v[0], v[1]};
+  return {static_cast<float>(v[0]), static_cast<float>(v[1])};
 }
 
 Vec3 JsonCursor::vec3(const Range& range) const {
-  std::array<float, 3> v{};
+  return Vec3(vec3d(range));
+}
+
+Imath::V3d JsonCursor::vec3d(const Range& range) const {
+  std::array<double, 3> v{};
   read_numbers(v, range);
   return {v[0], v[1], v[2]};
 }
@@ -231,9 +278,9 @@ Rgb JsonCursor::rgb(const Range& range) const {
   return {v.x, v.y, v.z};
 }
 
-std::vector<float> JsonCursor::numbers(std::size_t count) const {
-  std::vector<float> v(count);
-  read_numbers(v, kAnyNumber);
+std::vector<double> JsonCursor::numbers(std::size_t count, const Range& range) const {
+  std::vector<double> v(count);
+  read_numbers(v, range);
   return v;
 }
 

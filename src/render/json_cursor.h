@@ -4,8 +4,9 @@
 
 #include <cfloat>
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,6 +30,8 @@ constexpr Range kPositive{FLT_MIN, FLT_MAX, "> 0"};
 // Reads and parses. Throws Error{io} where the file cannot be read, Error{bad_input} with line and
 // column where it is malformed or an object has the same key twice.
 [[nodiscard]] nlohmann::json read_json(const std::string& path);
+// The same of the text of a file.
+[[nodiscard]] nlohmann::json parse_json(const std::string& text, const std::string& path);
 
 // All getters throw Error{bad_input}: "cornell.json: /materials/2/roughness: expected a number in
 // [0, 1], got "shiny"". A cursor points into the document and must not outlive it.
@@ -49,19 +52,28 @@ class JsonCursor {
   // Items of the array under `key`, none where the key is missing.
   [[nodiscard]] std::vector<JsonCursor> items(std::string_view key) const;
 
-  [[nodiscard]] bool is_array() const { return value_->is_array(); }
-  [[nodiscard]] bool is_text() const { return value_->is_string(); }
+  [[nodiscard]] std::size_t size() const;                  // of an array
+  [[nodiscard]] JsonCursor item(std::size_t index) const;  // index < size()
+  [[nodiscard]] std::vector<std::string> keys() const;     // of an object
+  [[nodiscard]] bool is_array() const;
+  [[nodiscard]] bool is_object() const;
+  [[nodiscard]] bool is_text() const;
   [[nodiscard]] float number(const Range& range = kAnyNumber) const;
   [[nodiscard]] std::uint32_t integer(std::uint32_t min, std::uint32_t max) const;
+  // A whole number up to `max`, which glTF allows to be written as 36.0 and 3.6e1 too.
+  [[nodiscard]] std::uint64_t whole(std::uint64_t max = std::uint64_t{1} << 53) const;
   [[nodiscard]] bool boolean() const;
   [[nodiscard]] std::string text() const;
   // One of `known`; its index.
   [[nodiscard]] std::size_t choice(std::span<const std::string_view> known) const;
   [[nodiscard]] Vec2 vec2(const Range& range = kAnyNumber) const;
   [[nodiscard]] Vec3 vec3(const Range& range = kAnyNumber) const;
+  [[nodiscard]] Imath::V3d vec3d(const Range& range = kAnyNumber) const;
+  [[nodiscard]] double real(const Range& range = kAnyNumber) const;
   [[nodiscard]] Vec3 direction() const;             // normalised; zero: an error
   [[nodiscard]] Rgb rgb(const Range& range) const;  // [r, g, b] or one number for grey
-  [[nodiscard]] std::vector<float> numbers(std::size_t count) const;
+  [[nodiscard]] std::vector<double> numbers(std::size_t count,
+                                            const Range& range = kAnyNumber) const;
 
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] std::string path() const { return path_.empty() ? "/" : path_; }  // JSON pointer
@@ -72,7 +84,7 @@ class JsonCursor {
  private:
   JsonCursor(const nlohmann::json& value, std::string file, std::string path)
       : value_(&value), file_(std::move(file)), path_(std::move(path)) {}
-  void read_numbers(std::span<float> out, const Range& range) const;
+  void read_numbers(std::span<double> out, const Range& range) const;
 
   const nlohmann::json* value_;
   std::string file_, path_;

@@ -33,15 +33,15 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
   if (json.find("emission_map")) material.emission = Rgb(1);
   if (const auto e = json.find("emission")) material.emission = e->rgb(kNonNegative);
 
-  const auto texture = [&](std::string_view key, ColorSpace color_space) {
+  const auto texture = [&](std::string_view key, TextureUse use) {
     const auto file = json.find(key);
-    return file ? load.textures.load(file->file(), file->text(), color_space,
+    return file ? load.textures.load(file->file(), file->text(), use,
                                      file->where() + ": material \"" + material.name + "\"")
                 : kNone;
   };
-  material.reflectance_texture = texture("reflectance_map", ColorSpace::srgb);
-  material.emission_texture = texture("emission_map", ColorSpace::srgb);
-  material.roughness_metalness_texture = texture("roughness_metalness_map", ColorSpace::linear);
+  material.reflectance_texture = texture("reflectance_map", TextureUse::reflectance);
+  material.emission_texture = texture("emission_map", TextureUse::radiance);
+  material.roughness_metalness_texture = texture("roughness_metalness_map", TextureUse::numbers);
   load.scene.materials.push_back(std::move(material));
 }
 

@@ -26,14 +26,17 @@ void read_material(const JsonCursor& json, JsonLoad& load);
 // `required` is false.
 [[nodiscard]] int read_material_name(const JsonCursor& json, const Scene& scene, bool required);
 
-// A transform: one step or a list of steps, applied in order.
-[[nodiscard]] Mat4 read_transform(const JsonCursor& json);
+// Where a shape goes, of row vectors, p * m. Unless Space::exact the numbers are floats, and so are
+// those of products.
+using Placement = Imath::M44d;
+[[nodiscard]] Placement product(const Placement& a, const Placement& b, bool exact);
+
 // The keys "transform" and "repeat" of a shape: where each copy goes, at least one. Throws
 // Error{limit} where there are more than kMaxCopies.
-[[nodiscard]] std::vector<Mat4> read_placements(const JsonCursor& json);
+[[nodiscard]] std::vector<Placement> read_placements(const JsonCursor& json, bool exact);
 
 // A shape and its copies, at all of `placements` (copies of the group around it).
-void read_shape(const JsonCursor& json, const std::vector<Mat4>& placements, JsonLoad& load,
+void read_shape(const JsonCursor& json, const std::vector<Placement>& placements, JsonLoad& load,
                 int depth = 0);
 
 }  // namespace psf::render

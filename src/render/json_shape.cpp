@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "formats/error.h"
 #include "render/json_parts.h"
@@ -14,9 +15,24 @@ namespace {
 constexpr int kMaxDepth = 32;  // of groups within groups
 constexpr std::uint32_t kMaxSegments = 65536;
 
-Mesh read_inline_mesh(const JsonCursor& json) {
+// What is taken off the coordinates of a shape, and added by its placement: its first point, so
+// that the shape has all digits of its numbers even far from the origin.
+class Base {
+ public:
+  // `point`: of the shape; null for none.
+  Base(const JsonLoad& load, const std::optional<JsonCursor>& point) {
+    if (load.scene.space.exact && point) base_ = point->vec3d();
+  }
+  [[nodiscard]] Vec3 point(const JsonCursor& json) const { return Vec3(json.vec3d() - base_); }
+  [[nodiscard]] const Imath::V3d& place() const { return base_; }
+
+ private:
+  Imath::V3d base_{0, 0, 0};
+};
+
+Mesh read_inline_mesh(const JsonCursor& json, const Base& base) {
   Mesh mesh;
-  for (const JsonCursor& p : json.items("positions")) mesh.positions.push_back(p.vec3());
+  for (const JsonCursor& p : json.items("positions")) mesh.positions.push_back(base.point(p));
   for (const JsonCursor& n : json.items("normals")) mesh.normals.push_back(n.vec3());
   for (const JsonCursor& uv : json.items("uvs")) mesh.uvs.push_back(uv.vec2());
   if (mesh.positions.empty()) json.fail("\"positions\" is missing or empty");
@@ -53,8 +69,8 @@ Mesh read_lathe(const JsonCursor& json) {
   return make_lathe(profile, read_segments(json, 32));
 }
 
-Mesh read_cylinder(const JsonCursor& json) {
-  const Vec3 from = json.at("from").vec3(), to = json.at("to").vec3();
+Mesh read_cylinder(const JsonCursor& json, const Base& base) {
+  const Vec3 from = base.point(json.at("from")), to = base.point(json.at("to"));
   const float radius = json.at("radius").number(kPositive);
   const auto to_radius = json.find("to_radius");
   const auto caps = json.find("caps");
@@ -63,8 +79,8 @@ Mesh read_cylinder(const JsonCursor& json) {
                        read_segments(json, 32), caps ? caps->boolean() : true);
 }
 
-Mesh read_box(const JsonCursor& json) {
-  const Vec3 min = json.at("min").vec3(), max = json.at("max").vec3();
+Mesh read_box(const JsonCursor& json, const Base& base) {
+  const Vec3 min = base.point(json.at("min")), max = base.point(json.at("max"));
   if (!(min.x < max.x && min.y < max.y && min.z < max.z)) {
     json.fail("\"min\" is not below \"max\" in each of x, y and z");
   }
@@ -98,7 +114,7 @@ void count_primitives(const JsonCursor& json, std::size_t each, std::size_t copi
 }
 
 // Adds the copies of `mesh` as one mesh.
-void add_mesh(const JsonCursor& json, const Mesh& mesh, const std::vector<Mat4>& placements,
+void add_mesh(const JsonCursor& json, const Mesh& mesh, const std::vector<Placement>& placements,
               JsonLoad& load) {
   count_primitives(json, mesh.triangles.size(), placements.size(), load);
   if (mesh.positions.size() > std::numeric_limits<std::uint32_t>::max() / placements.size()) {
@@ -109,10 +125,14 @@ void add_mesh(const JsonCursor& json, const Mesh& mesh, const std::vector<Mat4>&
   all.material = mesh.material;
   all.positions.reserve(mesh.positions.size() * placements.size());
   all.triangles.reserve(mesh.triangles.size() * placements.size());
-  for (const Mat4& placement : placements) {
+  for (const Placement& placement : placements) {
     Mesh copy = mesh;
     try {
-      transform(copy, placement);
+      if (load.scene.space.exact) {
+        transform(copy, placement);
+      } else {
+        transform(copy, Mat4(placement));
+      }
     } catch (const Error& error) {
       json.fail(error.what());
     }
@@ -121,25 +141,28 @@ void add_mesh(const JsonCursor& json, const Mesh& mesh, const std::vector<Mat4>&
   load.scene.meshes.push_back(std::move(all));
 }
 
-void add_sphere(const JsonCursor& json, const Sphere& sphere, const std::vector<Mat4>& placements,
-                JsonLoad& load) {
+// In float or double, see Placement.
+template <class T>
+void add_sphere(const JsonCursor& json, const Sphere& sphere, const Imath::Vec3<T>& center,
+                const std::vector<Placement>& placements, JsonLoad& load) {
   count_primitives(json, 1, placements.size(), load);
-  for (const Mat4& m : placements) {
+  for (const Placement& placement : placements) {
+    const Imath::Matrix44<T> m(placement);
     // The rows of the linear part: the images of the axes.
-    const Vec3 x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]),
+    const Imath::Vec3<T> x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]),
         z(m[2][0], m[2][1], m[2][2]);
-    const float scale = x.length();
-    const float slack = 1e-4f * scale;
+    const T scale = x.length();
+    const T slack = static_cast<T>(1e-4f) * scale;
     const bool even = std::abs(y.length() - scale) <= slack &&
                       std::abs(z.length() - scale) <= slack &&
-                      std::abs(dot(x, y)) <= slack * scale &&
-                      std::abs(dot(x, z)) <= slack * scale && std::abs(dot(y, z)) <= slack * scale;
+                      std::abs(x.dot(y)) <= slack * scale && std::abs(x.dot(z)) <= slack * scale &&
+                      std::abs(y.dot(z)) <= slack * scale;
     if (!even)
       json.fail(
           "a sphere can be moved, turned and scaled evenly only; use a lathe for an ellipsoid");
     Sphere copy = sphere;
-    copy.center = sphere.center * m;
-    copy.radius = sphere.radius * scale;
+    copy.center = Vec3(center * m);
+    copy.radius = static_cast<float>(static_cast<T>(sphere.radius) * scale);
     load.scene.spheres.push_back(std::move(copy));
   }
 }
@@ -147,15 +170,25 @@ void add_sphere(const JsonCursor& json, const Sphere& sphere, const std::vector<
 // The surfaces of a mesh file with its materials, or with `material` for all; its lights and
 // cameras stay out.
 void add_mesh_file(const JsonCursor& json, int material, bool flipped,
-                   const std::vector<Mat4>& placements, JsonLoad& load) {
+                   const std::vector<Placement>& placements, JsonLoad& load) {
   const JsonCursor file = json.at("file");
+  Scene& scene = load.scene;
   Scene part;
   try {
-    load_mesh_file(find_file(file.file(), file.text()), part);
+    const std::string path = find_file(file.file(), file.text());
+    if (scene.space.exact) {
+      part = load_fitting(path, [&](Scene& empty) { load_mesh_file(path, empty); });
+    } else {
+      load_mesh_file(path, part);
+      if (fitting_space(path, part).exact) scene.wanted.exact = true;
+    }
   } catch (const Error& error) {
     throw Error(error.code(), file.where() + ": " + error.what());
   }
-  Scene& scene = load.scene;
+  std::vector<Placement> of_part = placements;
+  if (scene.space.exact) {
+    for (Placement& placement : of_part) placement = part.space.to_world() * placement;
+  }
   const int first_material = static_cast<int>(scene.materials.size());
   if (material == kNone) {
     const int first_texture = static_cast<int>(scene.textures.size());
@@ -171,7 +204,7 @@ void add_mesh_file(const JsonCursor& json, int material, bool flipped,
   for (Mesh& mesh : part.meshes) {
     mesh.material = material == kNone ? mesh.material + first_material : material;
     if (flipped) flip(mesh);
-    add_mesh(json, mesh, placements, load);
+    add_mesh(json, mesh, of_part, load);
   }
   for (std::string& warning : part.warnings) scene.warnings.push_back(std::move(warning));
 }
@@ -198,44 +231,63 @@ void check_shape_keys(const JsonCursor& json, std::size_t kind, bool from_file) 
   json.check_keys(known);
 }
 
-std::vector<Mat4> combine(const JsonCursor& json, const std::vector<Mat4>& inner,
-                          const std::vector<Mat4>& outer) {
+std::vector<Placement> combine(const JsonCursor& json, const std::vector<Placement>& inner,
+                               const std::vector<Placement>& outer, bool exact) {
   if (inner.size() > kMaxCopies / outer.size()) {
     throw Error(ErrorCode::limit, fmt::format("{}: more than {} copies", json.where(), kMaxCopies));
   }
-  std::vector<Mat4> all;
+  std::vector<Placement> all;
   all.reserve(inner.size() * outer.size());
-  for (const Mat4& o : outer) {
-    for (const Mat4& i : inner) all.push_back(i * o);
+  for (const Placement& o : outer) {
+    for (const Placement& i : inner) all.push_back(product(i, o, exact));
   }
   return all;
 }
 
-Mesh read_mesh(const JsonCursor& json, std::size_t kind) {
+// A point of a shape that has points.
+std::optional<JsonCursor> point_of(const JsonCursor& json, std::size_t kind) {
   switch (kind) {
     case quad:
-      return make_quad(json.at("origin").vec3(), json.at("u").vec3(), json.at("v").vec3());
+      return json.find("origin");
     case box:
-      return read_box(json);
+      return json.find("min");
+    case cylinder:
+      return json.find("from");
+    case mesh_shape: {
+      const auto points = json.items("positions");
+      return points.empty() ? std::nullopt : std::optional(points[0]);
+    }
+    default:
+      return std::nullopt;
+  }
+}
+
+Mesh read_mesh(const JsonCursor& json, std::size_t kind, const Base& base) {
+  switch (kind) {
+    case quad:
+      return make_quad(base.point(json.at("origin")), json.at("u").vec3(), json.at("v").vec3());
+    case box:
+      return read_box(json, base);
     case arch:
       return read_arch(json);
     case lathe:
       return read_lathe(json);
     case cylinder:
-      return read_cylinder(json);
+      return read_cylinder(json, base);
     default:
-      return read_inline_mesh(json);
+      return read_inline_mesh(json, base);
   }
 }
 
 }  // namespace
 
-void read_shape(const JsonCursor& json, const std::vector<Mat4>& around, JsonLoad& load,
+void read_shape(const JsonCursor& json, const std::vector<Placement>& around, JsonLoad& load,
                 int depth) {
   const std::size_t kind = json.at("shape").choice(kShapes);
   const bool from_file = kind == mesh_shape && json.find("file").has_value();
   check_shape_keys(json, kind, from_file);
-  const std::vector<Mat4> placements = combine(json, read_placements(json), around);
+  const bool exact = load.scene.space.exact;
+  std::vector<Placement> placements = combine(json, read_placements(json, exact), around, exact);
   if (kind == group) {
     if (depth == kMaxDepth) json.fail(fmt::format("more than {} groups within groups", kMaxDepth));
     for (const JsonCursor& part : json.at("shapes").items())
@@ -249,11 +301,17 @@ void read_shape(const JsonCursor& json, const std::vector<Mat4>& around, JsonLoa
   const bool flipped = flip_json && flip_json->boolean();
   if (from_file) return add_mesh_file(json, material, flipped, placements, load);
   if (kind == sphere) {
-    const Sphere ball{name, json.at("center").vec3(), json.at("radius").number(kPositive),
-                      material};
-    return add_sphere(json, ball, placements, load);
+    const Imath::V3d center = json.at("center").vec3d();
+    const Sphere ball{name, Vec3(center), json.at("radius").number(kPositive), material};
+    return exact ? add_sphere(json, ball, center, placements, load)
+                 : add_sphere(json, ball, ball.center, placements, load);
   }
-  Mesh mesh = read_mesh(json, kind);
+  const Base base(load, point_of(json, kind));
+  Mesh mesh = read_mesh(json, kind, base);
+  if (exact) {
+    const Placement back = Placement().setTranslation(base.place());
+    for (Placement& placement : placements) placement = back * placement;
+  }
   if (const auto scale = json.find("uv_scale")) {
     const Vec2 factors = scale->vec2();
     for (Vec2& uv : mesh.uvs) uv *= factors;

@@ -102,12 +102,11 @@ float Lights::add(const Mesh& mesh, const Scene& scene) {
   const std::size_t first = triangles_.size();
   for (const auto& [a, b, c] : mesh.triangles) {
     const Vec3 &p0 = mesh.positions[a], &p1 = mesh.positions[b], &p2 = mesh.positions[c];
-    const Vec3 normal = cross(p1 - p0, p2 - p0);
-    const float size = std::sqrt(length_sq(normal));
-    areas.push_back(0.5f * size);
+    const TriangleNormal flat(p1 - p0, p2 - p0);
+    areas.push_back(0.5f * flat.size);
     const float offset = std::max(max_abs(p0), std::max(max_abs(p1), max_abs(p2))) * kOffsetScale;
     triangles_.push_back(
-        {p0, p1 - p0, p2 - p0, size > 0 ? normal * (1 / size) : Vec3(0, 0, 1), offset});
+        {p0, p1 - p0, p2 - p0, flat.size > 0 ? flat.normal : Vec3(0, 0, 1), offset});
   }
   Record r;
   r.kind = Kind::mesh;

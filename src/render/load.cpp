@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 
 #include "formats/error.h"
@@ -54,13 +55,22 @@ std::string find_file(const std::string& beside, const std::string& file) {
   return place.string();
 }
 
-int TextureTable::load(const std::string& scene_file, const std::string& file,
-                       ColorSpace color_space, const std::string& wanted_by) {
+int TextureTable::load(const std::string& scene_file, const std::string& file, TextureUse use,
+                       const std::string& wanted_by) {
   const std::string path = find_file(scene_file, file);
-  const auto [entry, is_new] = known_.try_emplace({path, color_space}, kNone);
+  const auto [entry, is_new] = known_.try_emplace({path, use}, kNone);
   if (!is_new) return entry->second;
+  std::error_code ignored;
+  if (lenient_ && fs::exists(path, ignored)) {
+    const std::string why = Texture::why_unreadable(path);
+    if (!why.empty()) {
+      scene_.warnings.push_back(
+          fmt::format("{}: {}: {}; the picture is left out", wanted_by, path, why));
+      return kNone;
+    }
+  }
   try {
-    scene_.textures.push_back(Texture::load(path, color_space));
+    scene_.textures.push_back(Texture::load(path, use, scene_.warnings));
   } catch (const Error& error) {
     throw Error(error.code(), wanted_by + ": " + error.what());
   }
@@ -76,24 +86,49 @@ void load_mesh_file(const std::string& path, Scene& scene) {
               path + ": not a kind of mesh file that psf reads (.obj, .gltf, .glb)");
 }
 
+namespace {
+
+// From world units to those of the scene: what is emitted toward a surface of its unit.
+void scale_intensities(Scene& scene) {
+  for (Light& light : scene.lights) {
+    if (light.kind == LightKind::directional || !is_finite(light.intensity)) continue;
+    for (int c = 0; c < 3; ++c) {
+      light.intensity[c] = std::ldexp(light.intensity[c], -2 * scene.space.exponent);
+    }
+    if (!is_finite(light.intensity)) {
+      throw Error(ErrorCode::limit,
+                  fmt::format("{}: light {}: its irradiance at the size of the scene is more than "
+                              "a float holds; scale the scene or the light",
+                              scene.name, light.name));
+    }
+  }
+}
+
+}  // namespace
+
 Scene load_scene(const std::string& path, const SceneOverrides& overrides) {
   std::error_code error;
   if (!fs::exists(path, error)) throw Error(ErrorCode::io, path + ": no such file");
   if (fs::is_directory(path, error))
     throw Error(ErrorCode::io, path + ": is a folder, a scene file is needed");
-  Scene scene;
-  scene.name = fs::path(path).filename().string();
   const std::string extension = lower(fs::path(path).extension().string());
-  if (extension == ".json") {
-    load_json(path, scene);
-  } else if (extension == ".obj" || extension == ".gltf" || extension == ".glb") {
-    load_mesh_file(path, scene);
-  } else {
-    throw Error(ErrorCode::bad_input,
-                path + ": not a kind of scene that psf reads (.json, .obj, .gltf, .glb)");
-  }
+  Scene scene = load_fitting(path, [&](Scene& empty) {
+    if (extension == ".json") {
+      load_json(path, empty);
+    } else if (extension == ".obj" || extension == ".gltf" || extension == ".glb") {
+      load_mesh_file(path, empty);
+    } else {
+      throw Error(ErrorCode::bad_input,
+                  path + ": not a kind of scene that psf reads (.json, .obj, .gltf, .glb)");
+    }
+  });
+  scene.name = fs::path(path).filename().string();
+  scale_intensities(scene);
   validate(path, scene);  // first: the automatic camera needs finite geometry
+  note_lost_digits(path, scene);
   apply_overrides(overrides, scene);
+  split_large_triangles(scene);
+  check_large_spheres(path, scene);
   scene.hash = hash_of(scene);
   return scene;
 }

@@ -12,7 +12,8 @@ namespace psf::render {
 // the first, which keeps what is not given. A sky replaces the environment; a sun is added to the
 // lights, from (0.4, 1, 0.3) and of irradiance 3 where only one of the two is given.
 struct SceneOverrides {
-  std::optional<Vec3> eye, target, up;
+  std::optional<Imath::V3d> eye, target;  // world units
+  std::optional<Vec3> up;
   std::optional<float> fov;            // horizontal, degrees, of every camera
   std::optional<Vec2> size;            // width, height in pixels, of every camera
   std::optional<Rgb> sky;              // constant radiance
@@ -27,5 +28,13 @@ struct SceneOverrides {
 // and place (JSON path, line), Error{limit} for more than 2^27 triangles and spheres, Error{usage}
 // naming the option of a senseless override.
 [[nodiscard]] Scene load_scene(const std::string& path, const SceneOverrides& overrides = {});
+
+// What a dump, whose positions are floats in world units, keeps of the scene.
+struct WorldDigits {
+  double across = 0, reach = 0;  // longest side of the scene; its farthest point from the origin
+  double step = 0;               // between floats that far from the origin
+  [[nodiscard]] double steps() const;
+};
+[[nodiscard]] WorldDigits world_digits(const Scene& scene);
 
 }  // namespace psf::render

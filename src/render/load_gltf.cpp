@@ -1,159 +1,135 @@
-// glTF and GLB, by tinygltf: the file, its scene graph and its warnings; the rest is in gltf_*.cpp.
-#include <ImathQuat.h>
+// glTF and GLB: the scene graph; the rest is in gltf_*.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <exception>
-#include <filesystem>
-#include <fstream>
-#include <string_view>
+#include <nlohmann/json.hpp>
 
 #include "formats/error.h"
 #include "render/gltf_parts.h"
-#include "render/json_cursor.h"
 
 namespace psf::render {
 namespace {
 
 constexpr int kMaxDepth = 512;  // of nodes within nodes
 
-// Keeps the bytes of a picture as they are, to be decoded by OpenImageIO. Those in a buffer view
-// are read later, with their bounds checked, which tinygltf does not do; those in files by
-// OpenImageIO itself.
-bool keep_bytes(tinygltf::Image* image, int, std::string*, std::string*, int, int,
-                const unsigned char* bytes, int size, void*) {
-  image->as_is = true;
-  if (image->bufferView < 0 && image->uri.empty() && size > 0)
-    image->image.assign(bytes, bytes + size);
+Imath::M44d local_matrix(const JsonCursor& node) {
+  if (const auto matrix = node.find("matrix")) {
+    // glTF stores columns of a matrix for column vectors: the same order as our rows for row
+    // vectors.
+    const auto v = matrix->numbers(16);
+    if (v[3] != 0 || v[7] != 0 || v[11] != 0 || v[15] != 1)
+      matrix->fail("the last row of a matrix is 0, 0, 0, 1 (column by column)");
+    Imath::M44d m;
+    for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = v[static_cast<std::size_t>(i)];
+    return m;
+  }
+  const auto scale = node.find("scale"), rotation = node.find("rotation"),
+             translation = node.find("translation");
+  std::array<double, 4> turn = {0, 0, 0, 1};
+  if (rotation) {
+    const auto v = rotation->numbers(4);
+    std::copy(v.begin(), v.end(), turn.begin());
+    if (turn == std::array<double, 4>{})
+      rotation->expected("a quaternion, four numbers that are not all zero");
+  }
+  return gltf_matrix(scale ? scale->vec3d() : Imath::V3d(1), turn,
+                     translation ? translation->vec3d() : Imath::V3d(0));
+}
+
+// Whether all of a node is in one point.
+bool is_point(const Imath::M44d& m) {
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (m[i][k] != 0) return false;
+    }
+  }
   return true;
 }
 
-void parse(GltfLoad& load) {
-  const bool binary = [&] {
-    std::ifstream file(load.path, std::ios::binary);
-    std::array<char, 4> magic{};
-    file.read(magic.data(), magic.size());
-    return std::string_view(magic.data(), magic.size()) == "glTF";
-  }();
-  tinygltf::TinyGLTF reader;
-  reader.SetImageLoader(keep_bytes, nullptr);
-  std::string error, warning;
-  bool ok = false;
-  try {
-    ok = binary ? reader.LoadBinaryFromFile(&load.model, &error, &warning, load.path)
-                : reader.LoadASCIIFromFile(&load.model, &error, &warning, load.path);
-  } catch (const std::exception& exception) {
-    error = exception.what();
-  }
-  if (ok) return;
-  if (!binary) (void)read_json(load.path);  // names line and column where the JSON is malformed
-  std::replace(error.begin(), error.end(), '\n', ' ');
-  error.erase(error.find_last_not_of(' ') + 1);
-  throw Error(ErrorCode::bad_input, fmt::format("{}: not readable as glTF: {}", load.path,
-                                                error.empty() ? "it is damaged" : error));
+bool is_hidden(GltfLoad& load, const JsonCursor& node) {
+  const auto extension = find_extension(node, "KHR_node_visibility");
+  if (!extension) return false;
+  load.check_keys(*extension, {"visible"});
+  const auto visible = extension->find("visible");
+  return visible && !visible->boolean();
 }
 
-void check_extensions(const GltfLoad& load) {
-  static constexpr std::string_view kKnown[] = {
-      "KHR_lights_punctual",   "KHR_materials_emissive_strength", "KHR_materials_ior",
-      "KHR_mesh_quantization", "KHR_materials_transmission",      "KHR_texture_transform"};
-  for (const std::string& name : load.model.extensionsRequired) {
-    if (std::find(std::begin(kKnown), std::end(kKnown), name) == std::end(kKnown)) {
-      load.fail("/extensionsRequired",
-                "the file needs " + name + ", which psf does not have; export it without");
-    }
-  }
-}
-
-Mat4 local_matrix(const GltfLoad& load, const tinygltf::Node& node, const std::string& place) {
-  const auto sized = [&](const std::vector<double>& v, std::size_t size, const char* key) {
-    if (!v.empty() && v.size() != size)
-      load.fail(place, fmt::format("\"{}\" has not {} numbers", key, size));
-    return !v.empty();
-  };
-  const auto f = [](double value) { return static_cast<float>(value); };
-  Mat4 m;
-  // glTF stores columns of a matrix for column vectors: the same order as our rows for row vectors.
-  if (sized(node.matrix, 16, "matrix")) {
-    for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = f(node.matrix[static_cast<std::size_t>(i)]);
-    return m;
-  }
-  if (sized(node.scale, 3, "scale"))
-    m.setScale(Vec3(f(node.scale[0]), f(node.scale[1]), f(node.scale[2])));
-  if (sized(node.rotation, 4, "rotation")) {
-    const auto& q = node.rotation;
-    m *= Imath::Quatf(f(q[3]), f(q[0]), f(q[1]), f(q[2])).normalized().toMatrix44();
-  }
-  if (sized(node.translation, 3, "translation")) {
-    const auto& t = node.translation;
-    m *= Mat4().setTranslation(Vec3(f(t[0]), f(t[1]), f(t[2])));
-  }
-  return m;
-}
-
-void add_node(GltfLoad& load, int index, const Mat4& parent, int depth) {
-  const std::string place = fmt::format("/nodes/{}", index);
-  if (index < 0 || static_cast<std::size_t>(index) >= load.model.nodes.size())
-    load.fail(place, "no such node");
+void add_node(GltfLoad& load, const JsonCursor& index, const Imath::M44d& parent, int depth) {
+  const JsonCursor node = load.element("nodes", index, "node");
   if (depth > kMaxDepth)
-    load.fail(place, fmt::format("more than {} nodes within nodes, or a circle", kMaxDepth));
-  const tinygltf::Node& node = load.model.nodes[static_cast<std::size_t>(index)];
-  const Mat4 to_world = local_matrix(load, node, place) * parent;
-  const std::string name = node.name.empty() ? fmt::format("node {}", index) : node.name;
-  if (node.skin >= 0) load.warn_once("skins are left out, meshes are as modelled");
-  if (node.mesh >= 0) add_gltf_mesh(load, node.mesh, name, to_world, place);
-  if (node.camera >= 0) add_gltf_camera(load, node.camera, name, to_world, place);
-  if (const auto* light = find_extension(node.extensions, "KHR_lights_punctual")) {
-    add_gltf_light(load, static_cast<int>(number_or(*light, "light", -1)), to_world, place);
+    node.fail(fmt::format("more than {} nodes within nodes, or a circle", kMaxDepth));
+  load.check_keys(node, {"camera", "children", "skin", "matrix", "mesh", "rotation", "scale",
+                         "translation", "weights"});
+  if (is_hidden(load, node)) return;
+  const Imath::M44d to_scene = local_matrix(node) * parent;
+  if (is_point(to_scene))
+    return load.leave_out("nodes scaled to nothing are left out", gltf_place(node));
+  const auto number = static_cast<std::size_t>(index.whole());
+  const std::string name = gltf_name(node, "node", number);
+  if (node.find("skin"))
+    load.leave_out("skins are left out, meshes are as modelled", gltf_place(node));
+  if (const auto mesh = node.find("mesh")) {
+    std::vector<Imath::M44d> placements{to_scene};
+    if (const auto instancing = find_extension(node, "EXT_mesh_gpu_instancing")) {
+      placements = gltf_instances(load, *instancing);
+      for (Imath::M44d& m : placements) m = m * to_scene;
+    }
+    add_gltf_mesh(load, *mesh, name, placements);
   }
-  for (const int child : node.children) add_node(load, child, to_world, depth + 1);
+  if (const auto camera = node.find("camera")) add_gltf_camera(load, *camera, name, to_scene);
+  if (const auto light = find_extension(node, "KHR_lights_punctual"))
+    add_gltf_light(load, light->at("light"), to_scene);
+  for (const JsonCursor& child : node.items("children")) add_node(load, child, to_scene, depth + 1);
 }
 
-// The nodes of the scene to show; without scenes, those that are nobody's child.
-std::vector<int> root_nodes(const GltfLoad& load) {
-  const tinygltf::Model& model = load.model;
-  if (!model.scenes.empty()) {
-    const int scene = std::max(model.defaultScene, 0);
-    if (static_cast<std::size_t>(scene) >= model.scenes.size()) {
-      load.fail("/scene", fmt::format("there is no scene {}", scene));
-    }
-    return model.scenes[static_cast<std::size_t>(scene)].nodes;
+// Calls add(index) for the nodes of the scene to show; without scenes, for those that are nobody's
+// child.
+template <typename Add>
+void each_root(GltfLoad& load, Add add) {
+  const JsonCursor root = load.root();
+  const auto scenes = root.find("scenes");
+  if (scenes && scenes->size() > 0) {
+    const auto chosen = root.find("scene");
+    const std::size_t index = chosen ? static_cast<std::size_t>(chosen->whole()) : 0;
+    if (index >= scenes->size()) chosen->fail(fmt::format("there is no scene {}", index));
+    if (scenes->size() > 1)
+      load.leave_out("scenes are left out but for that of \"scene\", or the first",
+                     fmt::format("{} of {}", scenes->size() - 1, scenes->size()));
+    const JsonCursor scene = scenes->item(index);
+    load.check_keys(scene, {"nodes"});
+    for (const JsonCursor& node : scene.items("nodes")) add(node);
+    return;
   }
-  std::vector<bool> is_child(model.nodes.size());
-  for (const tinygltf::Node& node : model.nodes) {
-    for (const int child : node.children) {
-      if (child >= 0 && static_cast<std::size_t>(child) < is_child.size()) {
-        is_child[static_cast<std::size_t>(child)] = true;
-      }
+  const auto nodes = root.items("nodes");
+  std::vector<bool> is_child(nodes.size());
+  for (const JsonCursor& node : nodes) {
+    for (const JsonCursor& child : node.items("children")) {
+      const std::uint64_t i = child.whole();
+      if (i < is_child.size()) is_child[static_cast<std::size_t>(i)] = true;
     }
   }
-  std::vector<int> roots;
   for (std::size_t i = 0; i < is_child.size(); ++i) {
-    if (!is_child[i]) roots.push_back(static_cast<int>(i));
+    if (is_child[i]) continue;
+    const nlohmann::json index = i;
+    add(JsonCursor(index, load.path));
   }
-  return roots;
 }
 
 }  // namespace
 
-void GltfLoad::fail(const std::string& place, const std::string& problem) const {
-  throw Error(ErrorCode::bad_input, fmt::format("{}: {}: {}", path, place, problem));
-}
-
-void GltfLoad::warn_once(const std::string& what) {
-  const std::string line = path + ": " + what;
-  if (std::find(scene.warnings.begin(), scene.warnings.end(), line) == scene.warnings.end()) {
-    scene.warnings.push_back(line);
-  }
-}
-
 void load_gltf(const std::string& path, Scene& scene) {
-  GltfLoad load{path, {}, scene, TextureTable(scene), {}, 0, kNone};
-  parse(load);
-  check_extensions(load);
+  GltfLoad load(path, scene);
+  read_gltf_file(load);
+  const JsonCursor root = load.root();
+  load.check_keys(root, {"accessors", "animations", "asset", "buffers", "bufferViews", "cameras",
+                         "extensionsUsed", "extensionsRequired", "images", "materials", "meshes",
+                         "nodes", "samplers", "scene", "scenes", "skins", "textures"});
+  check_gltf_extensions(load);
+  if (const auto animations = root.find("animations"); animations && animations->size() > 0)
+    load.leave_out("animations are left out, nodes stand as they are", "");
   add_gltf_materials(load);
-  for (const int node : root_nodes(load)) add_node(load, node, Mat4(), 0);
+  each_root(load, [&](const JsonCursor& node) { add_node(load, node, scene.space.to_local(), 0); });
+  load.tell();
 }
 
 }  // namespace psf::render

@@ -123,6 +123,11 @@ std::string hash_of(const Scene& scene) {
   digest.add(scene.environment.texture);
   digest.add(scene.environment.rotation);
   add_all(digest, scene.cameras);
+  if (!scene.space.is_world()) {
+    for (int axis = 0; axis < 3; ++axis)
+      digest.add(std::bit_cast<std::uint64_t>(scene.space.origin[axis]));
+    digest.add(scene.space.exponent);
+  }
   return digest.text();
 }
 

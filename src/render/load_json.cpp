@@ -1,4 +1,5 @@
 // The JSON scene file: cameras, environment and lights; the rest is in json_*.cpp.
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "formats/error.h"
@@ -10,12 +11,12 @@ namespace {
 constexpr float kRadians = std::numbers::pi_v<float> / 180;
 constexpr std::uint32_t kMaxSide = 65536;  // pixels
 
-Camera read_camera(const JsonCursor& json) {
+Camera read_camera(const JsonCursor& json, const Space& space) {
   json.check_keys({"name", "eye", "target", "up", "fov", "size", "lens_radius", "focus_distance"});
   Camera camera;
   if (const auto name = json.find("name")) camera.name = name->text();
-  camera.eye = json.at("eye").vec3();
-  camera.target = json.at("target").vec3();
+  camera.eye = space.local(json.at("eye").vec3d());
+  camera.target = space.local(json.at("target").vec3d());
   if (const auto up = json.find("up")) camera.up = up->direction();
   if (const auto fov = json.find("fov")) {
     camera.fov = fov->number({0.01, 179.99, "of degrees in (0, 180)"}) * kRadians;
@@ -27,10 +28,10 @@ Camera read_camera(const JsonCursor& json) {
     camera.height = items[1].integer(1, kMaxSide);
   }
   if (const auto radius = json.find("lens_radius"))
-    camera.lens_radius = radius->number(kNonNegative);
+    camera.lens_radius = space.local_length(radius->real(kNonNegative));
   camera.focus_distance = (camera.target - camera.eye).length();
   if (const auto focus = json.find("focus_distance"))
-    camera.focus_distance = focus->number(kPositive);
+    camera.focus_distance = space.local_length(focus->real(kPositive));
   return camera;
 }
 
@@ -39,7 +40,7 @@ Environment read_environment(const JsonCursor& json, JsonLoad& load) {
   Environment environment;
   if (const auto map = json.find("map")) {
     environment.texture =
-        load.textures.load(map->file(), map->text(), ColorSpace::srgb, map->where());
+        load.textures.load(map->file(), map->text(), TextureUse::radiance, map->where());
     environment.radiance = Rgb(1);
   }
   if (const auto radiance = json.find("radiance"))
@@ -50,24 +51,24 @@ Environment read_environment(const JsonCursor& json, JsonLoad& load) {
 }
 
 // The direction in which a light travels: "direction", or from its position to "target".
-Vec3 read_direction(const JsonCursor& json, const Vec3& position) {
+Vec3 read_direction(const JsonCursor& json, const Vec3& position, const Space& space) {
   const auto target = json.find("target");
   if (!target) return json.at("direction").direction();
   if (json.find("direction"))
     json.fail("has both \"direction\" and \"target\", one of them is enough");
-  const Vec3 direction = target->vec3() - position;
+  const Vec3 direction = space.local(target->vec3d()) - position;
   if (!(direction.length() > 0)) target->fail("the target is where the light is");
   return direction.normalized();
 }
 
-Light read_light(const JsonCursor& json) {
+Light read_light(const JsonCursor& json, const Space& space) {
   static constexpr std::string_view kKinds[] = {"point", "directional", "spot"};
   Light light;
   light.kind = static_cast<LightKind>(json.at("kind").choice(kKinds));
   switch (light.kind) {
     case LightKind::point:
       json.check_keys({"name", "kind", "position", "intensity"});
-      light.position = json.at("position").vec3();
+      light.position = space.local(json.at("position").vec3d());
       light.intensity = json.at("intensity").rgb(kNonNegative);
       break;
     case LightKind::directional:
@@ -81,8 +82,8 @@ Light read_light(const JsonCursor& json) {
     case LightKind::spot: {
       json.check_keys(
           {"name", "kind", "position", "direction", "target", "intensity", "inner", "outer"});
-      light.position = json.at("position").vec3();
-      light.direction = read_direction(json, light.position);
+      light.position = space.local(json.at("position").vec3d());
+      light.direction = read_direction(json, light.position, space);
       light.intensity = json.at("intensity").rgb(kNonNegative);
       const float outer = json.at("outer").number({0.01, 90, "of degrees in (0, 90]"});
       const auto inner = json.find("inner");
@@ -105,13 +106,17 @@ void load_json(const std::string& path, Scene& scene) {
   root.check_keys({"cameras", "environment", "materials", "shapes", "lights"});
   JsonLoad load(scene);
   for (const JsonCursor& camera : root.items("cameras"))
-    scene.cameras.push_back(read_camera(camera));
+    scene.cameras.push_back(read_camera(camera, scene.space));
   if (const auto environment = root.find("environment")) {
     scene.environment = read_environment(*environment, load);
   }
   for (const JsonCursor& material : root.items("materials")) read_material(material, load);
-  for (const JsonCursor& light : root.items("lights")) scene.lights.push_back(read_light(light));
-  for (const JsonCursor& shape : root.items("shapes")) read_shape(shape, {Mat4()}, load);
+  for (const JsonCursor& light : root.items("lights")) {
+    scene.lights.push_back(read_light(light, scene.space));
+  }
+  for (const JsonCursor& shape : root.items("shapes")) {
+    read_shape(shape, {scene.space.to_local()}, load);
+  }
 }
 
 }  // namespace psf::render

@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "formats/error.h"
+#include "render/load_parts.h"
 #include "render/mtl.h"
 #include "render/obj_file.h"
 #include "render/obj_mesh.h"
@@ -19,11 +20,17 @@ constexpr std::string_view kSpace = " \t";
 
 class ObjLoad {
  public:
-  ObjLoad(const std::string& path, Scene& scene) : path_(path), scene_(scene), textures_(scene) {}
+  ObjLoad(const std::string& path, Scene& scene)
+      : path_(path), scene_(scene), textures_(scene, true) {}
 
   void run() {
     LeftOut left_out;
-    const ObjFile file = read_obj(path_, left_out);
+    const ObjFile file = read_obj(path_, scene_.space, left_out);
+    if (!scene_.space.exact) {
+      // In floats, faces may be no faces far from the origin.
+      scene_.wanted = moved_space(scene_.space, file.bounds);
+      if (scene_.wanted.exact) return;
+    }
     for (const ObjFile::Libraries& line : file.libraries) add_libraries(line);
     ObjMeshes meshes(path_, file);
     for (const ObjPart& part : file.parts) {

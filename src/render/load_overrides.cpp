@@ -59,8 +59,8 @@ void override_cameras(const SceneOverrides& o, Scene& scene) {
     // One pose on the command line is one camera: the first of the scene gives what is not said.
     scene.cameras.resize(1);
     Camera& camera = scene.cameras[0];
-    if (o.eye) camera.eye = *o.eye;
-    if (o.target) camera.target = *o.target;
+    if (o.eye) camera.eye = scene.space.local(*o.eye);
+    if (o.target) camera.target = scene.space.local(*o.target);
     if (o.up) camera.up = unit(*o.up, "--up");
   }
   if (o.fov && !(*o.fov > 0 && *o.fov < 180)) {
@@ -75,10 +75,15 @@ void override_cameras(const SceneOverrides& o, Scene& scene) {
     }
   }
   for (Camera& camera : scene.cameras) {
-    if (o.fov) camera.fov = *o.fov * kRadians;
     if (o.size) {
       camera.width = static_cast<std::uint32_t>(o.size->x);
       camera.height = static_cast<std::uint32_t>(o.size->y);
+    }
+    if (o.fov) {
+      camera.fov = *o.fov * kRadians;
+    } else if (camera.vertical_fov > 0 && camera.height > 0) {
+      const float aspect = static_cast<float>(camera.width) / static_cast<float>(camera.height);
+      camera.fov = 2 * std::atan(std::tan(camera.vertical_fov / 2) * aspect);
     }
   }
 }
@@ -90,7 +95,7 @@ void override_lights(const SceneOverrides& o, Scene& scene) {
     check_radiance(scene.environment.radiance, "--sky");
   }
   if (o.sky_map) {
-    scene.textures.push_back(Texture::load(*o.sky_map, ColorSpace::srgb));
+    scene.textures.push_back(Texture::load(*o.sky_map, TextureUse::radiance, scene.warnings));
     scene.environment.texture = static_cast<int>(scene.textures.size()) - 1;
   }
   if (o.sun || o.sun_direction) {
@@ -108,6 +113,19 @@ void override_lights(const SceneOverrides& o, Scene& scene) {
   }
 }
 
+// Cube crosses, strips and mirror balls do not say what they are; their shape tells.
+void note_environment(Scene& scene) {
+  if (scene.environment.texture == kNone) return;
+  const Texture& map = scene.textures[static_cast<std::size_t>(scene.environment.texture)];
+  const std::size_t width = map.width(), height = map.height();
+  if (height < 8 || std::max(width, 2 * height) - std::min(width, 2 * height) <= height / 16)
+    return;
+  scene.warnings.push_back(fmt::format(
+      "{}: the environment's picture of {} x {} texels is stretched: one of latitude and longitude "
+      "is twice as wide as high",
+      scene.name, width, height));
+}
+
 void check_camera(const Camera& camera, std::size_t index, const std::string& file) {
   const auto fail = [&](const std::string& what, ErrorCode code = ErrorCode::bad_input) {
     throw Error(code, fmt::format("{}: camera {}{}{}: {}", file, index,
@@ -115,6 +133,10 @@ void check_camera(const Camera& camera, std::size_t index, const std::string& fi
   };
   if (!is_finite(camera.eye) || !is_finite(camera.target) || !is_finite(camera.up)) {
     fail("eye, target and up must be finite");
+  }
+  if (!in_space(camera.eye) || !in_space(camera.target)) {
+    fail(fmt::format("eye or target is farther away than {:.0e} times the scene's size", kFarthest),
+         ErrorCode::limit);
   }
   const Vec3 view = camera.target - camera.eye;
   if (!(view.length() > 0)) fail("eye and target are the same point, so it looks nowhere");
@@ -152,6 +174,7 @@ void apply_overrides(const SceneOverrides& overrides, Scene& scene) {
   if (scene.cameras.empty()) scene.cameras.push_back(camera_for(scene));
   override_cameras(overrides, scene);
   override_lights(overrides, scene);
+  note_environment(scene);
   for (std::size_t i = 0; i < scene.cameras.size(); ++i)
     check_camera(scene.cameras[i], i, scene.name);
   if (!has_light(scene)) {

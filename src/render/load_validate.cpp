@@ -10,15 +10,9 @@
 namespace psf::render {
 namespace {
 
-// Embree leaves out what is farther away than about 1.8e18.
-constexpr float kFarthest = 1e18f;
 // A triangle lower than this fraction of its longest side has no area to the precision of its
 // coordinates.
 constexpr double kFlat = 1e-7;
-
-bool in_space(const Vec3& p) {
-  return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
-}
 
 bool is_flat(const Imath::V3d& a, const Imath::V3d& b, const Imath::V3d& c) {
   const Imath::V3d u = b - a, v = c - a, w = c - b;
@@ -90,9 +84,11 @@ class Validation {
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
       const Vec3& p = mesh.positions[i];
       if (!is_finite(p)) say(fmt::format("vertex {} is not finite", i));
-      if (!in_space(p))
-        say(fmt::format("vertex {} is farther away than {} ({}, {}, {})", i, kFarthest, p.x, p.y,
-                        p.z));
+      if (!in_space(p)) {
+        const Imath::V3d w = scene_.space.world(p);
+        say(fmt::format("vertex {} is farther away than {} times the scene's size ({}, {}, {})", i,
+                        kFarthest, w.x, w.y, w.z));
+      }
     }
     for (std::size_t i = 0; i < mesh.uvs.size(); ++i) {
       if (!std::isfinite(mesh.uvs[i].x) || !std::isfinite(mesh.uvs[i].y)) {
@@ -186,8 +182,9 @@ class Validation {
         say("the intensity is not a finite number >= 0");
       }
     }
-    if (light.kind != LightKind::directional && !in_space(light.position))
-      say("the position is not finite");
+    if (light.kind != LightKind::directional && !in_space(light.position)) {
+      say("the position is not finite, or too far away for the size of the scene");
+    }
     if (light.kind != LightKind::point && !(std::abs(light.direction.length() - 1) < 1e-3f)) {
       say("the direction is not a unit vector");
     }

@@ -78,16 +78,18 @@ Material to_material(const MtlMaterial& mtl, const std::string& path, TextureTab
   material.emission = mtl.ke.value_or(Rgb(0));
   if (!mtl.map_ke.file.empty() && is_black(material.emission)) material.emission = Rgb(1);
 
-  const auto load = [&](const MtlMaterial::Map& map) {
+  const auto load = [&](const MtlMaterial::Map& map, TextureUse use) {
     if (map.file.empty()) return kNone;
     const std::string found = find_named(path, map.file);
-    return textures.load(path, found.empty() ? map.file : found, ColorSpace::srgb,
+    return textures.load(path, found.empty() ? map.file : found, use,
                          fmt::format("{}:{}: material {}", path, map.line, mtl.name));
   };
   if (material.kind == MaterialKind::diffuse || material.kind == MaterialKind::coat ||
       material.kind == MaterialKind::gloss)
-    material.reflectance_texture = load(mtl.map_kd);
-  material.emission_texture = load(mtl.map_ke);
+    material.reflectance_texture = load(mtl.map_kd, TextureUse::reflectance);
+  material.emission_texture = load(mtl.map_ke, TextureUse::radiance);
+  // Nothing glows for want of its picture.
+  if (material.emission_texture == kNone && !mtl.map_ke.file.empty()) material.emission = Rgb(0);
   return material;
 }
 

@@ -17,7 +17,8 @@ namespace {
 
 class ObjReader {
  public:
-  ObjReader(const std::string& path, LeftOut& left_out) : lines_(path), left_out_(left_out) {}
+  ObjReader(const std::string& path, const Space& space, LeftOut& left_out)
+      : lines_(path), space_(space), left_out_(left_out) {}
 
   ObjFile run() {
     while (lines_.next()) read_statement();
@@ -65,19 +66,20 @@ class ObjReader {
   void read_vertex() {
     const auto number = static_cast<std::size_t>(++kinds_[0].count);
     // x y z, then a weight or a colour, or the weight and the colour.
-    std::array<float, 3> p{};
+    Imath::V3d p(0, 0, 0);
     int numbers = 0;
     for (std::string_view word = lines_.word(); !word.empty(); word = lines_.word()) {
-      const float value = lines_.to_number(word, "vertex", number);
-      if (numbers < 3) p[static_cast<std::size_t>(numbers)] = value;
-      if (numbers == 3) weight_ = value;
+      const double value = lines_.to_real(word, "vertex", number);
+      if (numbers < 3) p[numbers] = value;
+      if (numbers == 3) weight_ = static_cast<float>(value);
       ++numbers;
     }
     if (numbers < 3) fail_count("vertex", number, numbers, 3);
     if (numbers == 4 && weight_ != 1) left_out_.add("weights of vertices");
     if (numbers == 5) fail_count("vertex", number, numbers, 6);
     if (numbers >= 6) left_out_.add("vertex colours");
-    file_.positions.emplace_back(p[0], p[1], p[2]);
+    file_.positions.push_back(space_.local(p));
+    file_.bounds.extendBy(p);
   }
 
   void read_uv() {
@@ -170,6 +172,7 @@ class ObjReader {
   }
 
   TextLines lines_;
+  const Space& space_;
   LeftOut& left_out_;
   ObjFile file_;
   std::array<Kind, 3> kinds_{Kind{"vertex"}, Kind{"texture coordinate"}, Kind{"normal"}};
@@ -183,8 +186,8 @@ class ObjReader {
 
 }  // namespace
 
-ObjFile read_obj(const std::string& path, LeftOut& left_out) {
-  return ObjReader(path, left_out).run();
+ObjFile read_obj(const std::string& path, const Space& space, LeftOut& left_out) {
+  return ObjReader(path, space, left_out).run();
 }
 
 }  // namespace psf::render

@@ -1,6 +1,8 @@
 // What an OBJ file says, before materials and triangles are made of it.
 #pragma once
 
+#include <ImathBox.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -34,7 +36,8 @@ struct ObjPart {
 };
 
 struct ObjFile {
-  std::vector<Vec3> positions, normals;
+  std::vector<Vec3> positions, normals;  // positions in the space that they are read for
+  Imath::Box3d bounds;                   // of all positions, in the world
   std::vector<Vec2> uvs;
   std::vector<ObjCorner> corners;
   std::vector<ObjPart> parts;  // in the order of their first faces, none empty
@@ -47,6 +50,6 @@ struct ObjFile {
 
 // Every statement, its numbers and indices checked where they stand; what becomes nothing is added
 // to `left_out`. Throws Error{bad_input} naming file and line, Error{io} where it cannot be read.
-[[nodiscard]] ObjFile read_obj(const std::string& path, LeftOut& left_out);
+[[nodiscard]] ObjFile read_obj(const std::string& path, const Space& space, LeftOut& left_out);
 
 }  // namespace psf::render

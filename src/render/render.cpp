@@ -42,6 +42,7 @@ class Loop {
   Loop(const Scene& scene, const Integrator& integrator, const RenderSettings& settings,
        formats::Writer* writer)
       : integrator_(integrator),
+        space_(scene.space),
         settings_(settings),
         writer_(writer),
         shade_rate_(settings.shade_rate),
@@ -73,6 +74,7 @@ class Loop {
   [[nodiscard]] Done done_now() const;
 
   const Integrator& integrator_;
+  Space space_;
   const RenderSettings& settings_;
   formats::Writer* writer_;
   ShadeRate shade_rate_;
@@ -199,7 +201,7 @@ void Loop::trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path
   const Vec2 lens = view.rays.has_lens() ? sampler.next_2d() : Vec2(0, 0);
   const PathRecord record = integrator_.trace(view.rays.ray(position, lens), sampler,
                                               shade_rate_.shaded(x, y, pass), rays);
-  recorder.set(slot, camera, y * view.width + x, record);
+  recorder.set(slot, camera, y * view.width + x, in_world(record, space_));
 }
 
 void Loop::emit(std::uint64_t pass, std::uint16_t camera, std::size_t count) {

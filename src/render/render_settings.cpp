@@ -62,7 +62,7 @@ formats::Head make_head(const Scene& scene, const Integrator& integrator,
       settings.integrator.vertex_roughness);
   metadata.units = "scene";
   for (const std::size_t k : chosen_cameras(scene, settings)) {
-    metadata.cameras.push_back(CameraRays(scene.cameras[k]).info());
+    metadata.cameras.push_back(CameraRays(scene.cameras[k]).info(scene.space));
   }
   metadata.lights = integrator.light_names();
   for (const Material& material : scene.materials) metadata.materials.push_back(material.name);

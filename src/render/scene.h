@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/vec.h"
+#include "render/space.h"
 #include "render/texture.h"
 
 namespace psf::render {
@@ -39,12 +40,12 @@ struct Material {
   int emission_texture = kNone;
 };
 
-// Triangles with one material, world space. Counter-clockwise seen from the front.
+// Triangles with one material. Counter-clockwise seen from the front.
 struct Mesh {
   std::string name;
-  std::vector<Vec3> positions;  // world units
-  std::vector<Vec3> normals;    // empty, or unit, one a position
-  std::vector<Vec2> uvs;        // empty, or one a position
+  std::vector<Vec3> positions;
+  std::vector<Vec3> normals;  // empty, or unit, one a position
+  std::vector<Vec2> uvs;      // empty, or one a position
   std::vector<std::array<std::uint32_t, 3>> triangles;
   int material = 0;
 };
@@ -64,8 +65,9 @@ struct Light {
   LightKind kind = LightKind::point;
   Vec3 position{0, 0, 0};    // point, spot; Vec3() would leave it to chance, and the hash with it
   Vec3 direction{0, 0, -1};  // unit, in which the light travels: directional, spot
-  Rgb intensity{1, 1,
-                1};  // point, spot: radiant intensity; directional: irradiance on a facing surface
+  // point, spot: radiant intensity, in the scene's unit of length; directional: irradiance on a
+  // facing surface
+  Rgb intensity{1, 1, 1};
   float cos_inner = 1, cos_outer = 0;  // spot: full inside, smooth falloff to 0 at outer
   float angle = 0;  // directional: angular radius in radians, 0 for a point at infinity
 };
@@ -80,12 +82,15 @@ struct Environment {
 struct Camera {
   std::string name;
   Vec3 eye{0, 0, 0}, target{0, 0, -1}, up{0, 1, 0};
-  float fov = 0.7f;  // horizontal field of view, radians
+  float fov = 0.7f;        // horizontal field of view, radians
+  float vertical_fov = 0;  // where above 0, fov follows from it and the shape of the picture
   std::uint32_t width = 512, height = 512;
   float lens_radius = 0;     // 0: pinhole
   float focus_distance = 1;  // along the view axis, used where lens_radius > 0
 };
 
+// All coordinates and lengths are those of `space`, which is the world but for scenes that are far
+// from its origin, huge or tiny.
 struct Scene {
   std::string name;  // file name without folder
   std::string hash;  // hexadecimal, over everything that shapes the picture (files and command-line
@@ -98,6 +103,8 @@ struct Scene {
   Environment environment;
   std::vector<Camera> cameras;
   std::vector<std::string> warnings;  // what was repaired or left out while loading, one line each
+  Space space;
+  Space wanted;  // where exact: what a loader found that the scene must be loaded in instead
 };
 
 }  // namespace psf::render

@@ -143,22 +143,34 @@ Mesh make_arch(const Arch& arch) {
   return mesh;
 }
 
-void transform(Mesh& mesh, const Mat4& m) {
+namespace {
+
+template <class T>
+void transform_in(Mesh& mesh, const Imath::Matrix44<T>& m) {
   const Imath::M44d wide(m);
   const double determinant = wide.determinant();
   if (!(std::abs(determinant) > 0) || !std::isfinite(determinant)) {
     throw Error(ErrorCode::bad_input, "the transform flattens the shape (a scale of 0)");
   }
-  for (Vec3& p : mesh.positions) p = p * m;
-  const Mat4 normal_matrix(wide.inverse().transposed());
+  for (Vec3& p : mesh.positions) p = Vec3(Imath::Vec3<T>(p) * m);
+  const Imath::Matrix44<T> normal_matrix(wide.inverse().transposed());
   for (Vec3& n : mesh.normals) {
-    Vec3 turned;
-    normal_matrix.multDirMatrix(n, turned);
-    n = turned.normalized();
+    Imath::Vec3<T> turned;
+    normal_matrix.multDirMatrix(Imath::Vec3<T>(n), turned);
+    n = Vec3(turned.normalized());
   }
   if (determinant < 0) {
     for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   }
+}
+
+}  // namespace
+
+void transform(Mesh& mesh, const Mat4& m) {
+  transform_in(mesh, m);
+}
+void transform(Mesh& mesh, const Imath::M44d& m) {
+  transform_in(mesh, m);
 }
 
 void flip(Mesh& mesh) {

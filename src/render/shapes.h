@@ -39,6 +39,8 @@ struct Arch {
 // Positions by `m` (row vectors, p * m), normals by its inverse transposed; a mirroring m turns the
 // winding, so the front stays the front. Throws Error{bad_input} where m has no inverse.
 void transform(Mesh& mesh, const Mat4& m);
+// The same in double, rounded once.
+void transform(Mesh& mesh, const Imath::M44d& m);
 void flip(Mesh& mesh);  // front becomes back
 // Adds the triangles of `part`; both have normals, or neither; both have uvs, or neither.
 void append(Mesh& mesh, const Mesh& part);

@@ -40,9 +40,8 @@ Surface Shapes::surface(const Hit& hit, const Vec3& direction) const {
     // distance.
     s.position = p0 * w + p1 * hit.u + p2 * hit.v;
     s.offset = std::max(max_abs(p0), std::max(max_abs(p1), max_abs(p2))) * kOffsetScale;
-    const Vec3 scaled = cross(p1 - p0, p2 - p0);
-    const float scaled_sq = length_sq(scaled);
-    s.geometric_normal = scaled_sq > 0 ? scaled * (1 / std::sqrt(scaled_sq)) : -direction;
+    const TriangleNormal flat(p1 - p0, p2 - p0);
+    s.geometric_normal = flat.size > 0 ? flat.normal : -direction;
     s.normal = s.geometric_normal;
     if (mesh.normals != nullptr) {
       const Vec3 sum = mesh.normals[a] * w + mesh.normals[b] * hit.u + mesh.normals[c] * hit.v;

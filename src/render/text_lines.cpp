@@ -174,9 +174,13 @@ float TextLines::number(std::string_view kind, std::size_t index) {
 }
 
 float TextLines::to_number(std::string_view word, std::string_view kind, std::size_t index) const {
+  return static_cast<float>(to_real(word, kind, index));
+}
+
+double TextLines::to_real(std::string_view word, std::string_view kind, std::size_t index) const {
   double value = 0;
   const bool good = parse(word, value);
-  if (good && std::abs(value) <= double{FLT_MAX}) return static_cast<float>(value);
+  if (good && std::abs(value) <= double{FLT_MAX}) return value;
   std::string what(kind);
   if (index > 0) what += fmt::format(" {}", index);
   if (word.empty()) fail(what + " lacks a number");

@@ -40,6 +40,9 @@ class TextLines {
   // The same for a word already read.
   [[nodiscard]] float to_number(std::string_view word, std::string_view kind,
                                 std::size_t index = 0) const;
+  // With all its digits.
+  [[nodiscard]] double to_real(std::string_view word, std::string_view kind,
+                               std::size_t index = 0) const;
   // Whether `word` is a number and nothing else.
   [[nodiscard]] static bool is_number(std::string_view word);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,23 +14,37 @@
 
 namespace psf::render {
 
-enum class ColorSpace {
-  srgb,
-  linear
-};  // of integer files; float files are linear whatever is asked
+// What the values of a picture are for, and so what they may be. Colours of integer files are sRGB
+// unless the file says otherwise, those of float files are linear.
+enum class TextureUse {
+  reflectance,  // colours in [0, 1]
+  numbers,      // as stored, in [0, 1]
+  radiance      // colours of at least 0; premultiplied ones stay so, as light is
+};
 
-// Alpha is ignored, grey becomes RGB. 8-bit files stay 8-bit in memory (4 bytes a texel) and are
-// made linear by a table at each lookup; all else is 32-bit float.
+// 8-bit files stay 8-bit in memory (4 bytes a texel) and are made linear by a table at each lookup;
+// all else is 32-bit float.
 class Texture {
  public:
   // (height, width) colours, row 0 at v = 1 (the top of the picture).
   Texture(std::size_t width, std::size_t height, std::vector<Rgb> texels);
-  // Throws Error{io} where the file is missing, Error{bad_input} where it is no picture,
-  // Error{limit} where it has more than 2^28 texels; all name the file.
-  static Texture load(const std::string& path, ColorSpace color_space);
+
+  // What a file says of its pixels counts: orientation, gamma, chromaticities, the display window
+  // (black around the data), premultiplied alpha; but with `plain` its colours are sRGB whatever it
+  // says, as glTF wants. Alpha itself is ignored, grey becomes RGB. Values out of range are
+  // clamped, which `notes` tells in one line, as it tells what of the file is left out; each starts
+  // with the name. Throws Error{io} where the file is missing, Error{bad_input} where it is no
+  // picture, a cube map, logarithmic or not finite, Error{limit} where it has more than 2^28
+  // texels; all name the file.
+  static Texture load(const std::string& path, TextureUse use, std::vector<std::string>& notes,
+                      bool plain = false);
   // The same from the bytes of a picture file; `name` says in errors where they come from.
   static Texture decode(std::span<const unsigned char> bytes, const std::string& name,
-                        ColorSpace color_space);
+                        TextureUse use, std::vector<std::string>& notes, bool plain = false);
+  // Why there is no reader for the picture of this path or, where there are any, of these bytes;
+  // empty where there is one.
+  static std::string why_unreadable(const std::string& path,
+                                    std::span<const unsigned char> bytes = {});
 
   [[nodiscard]] Rgb at(const Vec2& uv) const;  // u to the right, v up
   [[nodiscard]] std::size_t width() const { return width_; }
@@ -44,14 +59,13 @@ class Texture {
  private:
   using Table = std::array<float, 256>;
   Texture(std::size_t width, std::size_t height) : width_(width), height_(height) {}
-  static Texture read(const std::string& name, std::span<const unsigned char> bytes,
-                      ColorSpace color_space);
-  static const Table& table_of(ColorSpace color_space);
+  static Texture read(const std::string& name, std::span<const unsigned char> bytes, TextureUse use,
+                      std::vector<std::string>& notes, bool plain);
 
   std::size_t width_, height_;
-  std::vector<std::uint32_t> packed_;  // red in the low byte, or empty
-  const Table* table_ = nullptr;       // of packed_: value of a byte
-  std::vector<Rgb> texels_;            // or empty
+  std::vector<std::uint32_t> packed_;   // red in the low byte, or empty
+  std::shared_ptr<const Table> table_;  // of packed_: value of a byte
+  std::vector<Rgb> texels_;             // or empty
 };
 
 // The sRGB transfer curve of IEC 61966-2-1, encoded to linear, both in [0, 1].

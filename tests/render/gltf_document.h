@@ -109,4 +109,12 @@ inline Document triangle() {
   return d;
 }
 
+// A triangle with a material.
+inline Document with_material(const json& material) {
+  Document d = triangle();
+  d.root["materials"] = json::array({material});
+  d.root["meshes"][0]["primitives"][0]["material"] = 0;
+  return d;
+}
+
 }  // namespace psf::render

@@ -73,7 +73,8 @@ TEST_CASE("malformed JSON is named with line and column", "[load][json]") {
   CHECK(contains(message_of("{\n  \"materials\": [\n    }\n"), "s.json:3:5: malformed JSON: "));
   CHECK(contains(message_of("{\"a\": 1"), "s.json:1:8: malformed JSON: "));
   CHECK(contains(message_of(""), "s.json:1:1: malformed JSON: "));
-  CHECK(contains(message_of("{\"a\": 1e999}"), "malformed JSON: number overflow"));
+  CHECK(contains(message_of("{\n\"a\": 1e999}"), "s.json:2:6: malformed JSON: number overflow"));
+  CHECK(contains(message_of("{\n\"caf\xE9\": 1}"), "s.json:2:6: malformed JSON: "));
   CHECK(message_of(R"({"materials": [{"name": "a", "name": "b"}]})") ==
         "s.json: the key \"name\" is twice in one object");
 }

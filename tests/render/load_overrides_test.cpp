@@ -34,7 +34,7 @@ TEST_CASE("size and field of view change every camera, a pose leaves one", "[loa
     CHECK((camera.width == 40 && camera.height == 30));
     CHECK(camera.fov == Approx(std::numbers::pi / 2));
   }
-  o.eye = Vec3(0, 3, 9);
+  o.eye = Imath::V3d(0, 3, 9);
   o.up = Vec3(0, 0, -2);
   scene = load(o);
   REQUIRE(scene.cameras.size() == 1);
@@ -91,11 +91,11 @@ TEST_CASE("senseless values of the command line are errors of usage", "[load][ov
 
 TEST_CASE("cameras that see nothing are refused", "[load][overrides]") {
   SceneOverrides o;
-  o.eye = o.target = Vec3(1, 2, 3);
+  o.eye = o.target = Imath::V3d(1, 2, 3);
   CHECK(failure(o).message ==
         "s.json: camera 0 a: eye and target are the same point, so it looks nowhere");
   CHECK(failure(o).code == ErrorCode::bad_input);
-  o.eye = Vec3(1, 9, 3);
+  o.eye = Imath::V3d(1, 9, 3);
   CHECK(failure(o).message ==
         "s.json: camera 0 a: looks along its up direction; choose another \"up\"");
 }

@@ -11,6 +11,7 @@
 
 #include "catch.h"
 #include "core/output_file.h"
+#include "formats/metadata.h"
 #include "formats/reader.h"
 #include "temp_folder.h"
 
@@ -132,4 +133,25 @@ TEST_CASE("with several cameras pictures get their names, and --json the figures
   CHECK(formats::Reader(folder / "second.pvb").records() == 2 * 10 * 12);
   CHECK(run({}, "first") == 0);
   CHECK(formats::Reader(folder / "first.pvb").records() == 2 * 24 * 16);
+}
+
+TEST_CASE("a colour of the command line may be one number, for grey") {
+  const TempFolder folder;
+  const auto hash = [&](const std::vector<std::string>& light) {
+    const std::string path = folder / "a.pvb";
+    std::vector<std::string> arguments = {"-o", path, "--size", "2x2", "--passes", "1", "--quiet"};
+    arguments.insert(arguments.end(), light.begin(), light.end());
+    std::filesystem::remove(path);
+    REQUIRE(wait_for(start(arguments)) == 0);
+    return formats::parse_metadata(formats::Reader(path).head().metadata).scene_hash;
+  };
+  CHECK(hash({"--sky", "0.5"}) == hash({"--sky", "0.5,0.5,0.5"}));
+  CHECK(hash({"--sky", "0.5"}) != hash({"--sky", "0.25"}));
+  CHECK(hash({"--sun-irradiance", "2"}) == hash({"--sun-irradiance", "2,2,2"}));
+  for (const std::vector<std::string>& wrong : std::vector<std::vector<std::string>>{
+           {"--sky", "-1"}, {"--sky", "1,2"}, {"--sun-irradiance", "-1"}, {"--eye", "1"}}) {
+    std::vector<std::string> arguments = {"-o", folder / "b.pvb"};
+    arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+    CHECK(wait_for(start(arguments)) == 2);
+  }
 }

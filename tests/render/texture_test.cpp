@@ -12,6 +12,13 @@ Texture corners() {
   return Texture(2, 2, {Rgb(1, 0, 0), Rgb(0, 1, 0), Rgb(0, 0, 1), Rgb(0, 0, 0)});
 }
 
+Texture load(const std::string& path, TextureUse use) {
+  std::vector<std::string> notes;
+  Texture texture = Texture::load(path, use, notes);
+  CHECK(notes.empty());
+  return texture;
+}
+
 void check_color(const Rgb& got, const Rgb& expected) {
   for (int c = 0; c < 3; ++c) CHECK(got[c] == Approx(expected[c]).margin(1e-6));
 }
@@ -50,25 +57,24 @@ TEST_CASE("a lookup that is not finite gives some texel", "[texture]") {
 TEST_CASE("8-bit files are sRGB or linear, as asked", "[texture]") {
   const TempFolder folder;
   const std::string path = folder.write("three.ppm", ppm(3, "188 188 188  255 0 0  10 0 0"));
-  const Texture srgb = Texture::load(path, ColorSpace::srgb);
+  const Texture srgb = load(path, TextureUse::reflectance);
   CHECK(srgb.width() == 3);
   CHECK(srgb.height() == 1);
   CHECK(srgb.texel(0, 0).x == Approx(0.5029).margin(1e-4));
   check_color(srgb.texel(1, 0), {1, 0, 0});
   CHECK(srgb.texel(2, 0).x ==
         Approx(10 / 255.0 / 12.92).epsilon(1e-5));  // the straight part of the curve
-  CHECK(Texture::load(path, ColorSpace::linear).texel(0, 0).y == Approx(188 / 255.0));
+  CHECK(load(path, TextureUse::numbers).texel(0, 0).y == Approx(188 / 255.0));
 }
 
 TEST_CASE("grey becomes RGB, and float files are linear whatever is asked", "[texture]") {
   const TempFolder folder;
-  check_color(
-      Texture::load(folder.write("grey.pgm", "P2\n1 1\n255\n51\n"), ColorSpace::linear).texel(0, 0),
-      {0.2f, 0.2f, 0.2f});
+  check_color(load(folder.write("grey.pgm", "P2\n1 1\n255\n51\n"), TextureUse::numbers).texel(0, 0),
+              {0.2f, 0.2f, 0.2f});
   // 1 x 1, little-endian: 0.5, 2, 0.25.
   const std::string values("\x00\x00\x00\x3f\x00\x00\x00\x40\x00\x00\x80\x3e", 12);
   const std::string pfm = folder.write("one.pfm", "PF\n1 1\n-1.0\n" + values);
-  check_color(Texture::load(pfm, ColorSpace::srgb).texel(0, 0), {0.5f, 2, 0.25f});
+  check_color(load(pfm, TextureUse::radiance).texel(0, 0), {0.5f, 2, 0.25f});
 }
 
 TEST_CASE("colours under a transparent alpha are as stored", "[texture]") {
@@ -77,7 +83,9 @@ TEST_CASE("colours under a transparent alpha are as stored", "[texture]") {
       "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP4"
       "n2bMAAAFmQGZg+e4CgAAAABJRU5ErkJggg==");
   const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
-  const Texture texture = Texture::decode({data, bytes.size()}, "embedded", ColorSpace::linear);
+  std::vector<std::string> notes;
+  const Texture texture =
+      Texture::decode({data, bytes.size()}, "embedded", TextureUse::numbers, notes);
   check_color(texture.texel(0, 0), {1, 0.4f, 0.2f});
 }
 
@@ -85,7 +93,7 @@ TEST_CASE("a texture that is missing, no picture or empty is named", "[texture]"
   const TempFolder folder;
   const auto failure = [](const std::string& path) {
     try {
-      (void)Texture::load(path, ColorSpace::srgb);
+      (void)load(path, TextureUse::radiance);
     } catch (const Error& error) {
       return Failure{error.code(), error.what()};
     }
