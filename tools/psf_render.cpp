@@ -50,7 +50,8 @@ film::Image make_image(const render::Scene& scene, const render::Camera& camera,
   film::Image image;
   image.width = film.width();
   image.height = film.height();
-  image.add("", "RGB", film.mean());
+  // Of a pixel none of whose paths is shaded, what the shaded ones around it say.
+  image.add("", "RGB", settings.shade_rate > 1 ? film.filled_mean() : film.mean());
   const auto& i = settings.integrator;
   image.attributes = {{"producer", settings.producer},
                       {"scene", scene.name},
