@@ -137,6 +137,7 @@ std::string to_json(const Metadata& metadata) {
                       {"cameras", std::move(cameras)},
                       {"lights", metadata.lights}};
   if (!metadata.materials.empty()) json["materials"] = metadata.materials;
+  if (metadata.shade_rate > 1) json["shade_rate"] = metadata.shade_rate;
   // A name that is not UTF-8 (a file name may be any bytes) is stored with U+FFFD in it.
   return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
@@ -158,6 +159,7 @@ Metadata parse_metadata(const std::string& json) {
   read_key(place, "seed", out.seed);
   read_key(place, "block_base", out.block_base);
   read_key(place, "split", out.split);
+  read_key(place, "shade_rate", out.shade_rate);
   read_key(place, "vertex_roughness", out.vertex_roughness);
   read_key(place, "vertex_rule", out.vertex_rule);
   read_key(place, "units", out.units);

@@ -27,8 +27,11 @@ struct Metadata {
   std::string enumeration;  // "pixel" (a pass visits pixels in order) or "global" (one sequence
                             // over the image plane)
   std::uint64_t seed = 0;
-  std::uint32_t block_base = 2;     // b: blocks of b^m contiguous paths are well distributed
-  std::uint32_t split = 1;          // continuations averaged into each contribution
+  std::uint32_t block_base = 2;  // b: blocks of b^m contiguous paths are well distributed
+  std::uint32_t split = 1;       // continuations averaged into each contribution
+  // Above 1: one path in so many is shaded, whatever it meets; `flags` says so of records without
+  // vertex too.
+  std::uint32_t shade_rate = 1;
   double vertex_roughness = 0;      // vertex rule: first vertex whose roughness is at least this
   std::string vertex_rule;          // the same in words
   std::string units;                // of lengths, "scene" where unknown

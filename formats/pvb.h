@@ -98,6 +98,19 @@ typedef struct pvb_channel {
 // Bits of the channel `flags`.
 enum { PVB_HAS_VERTEX = 1, PVB_IS_SHADED = 2 };
 
+// What goes where, in short; README.md, "From what a renderer has", has the whole of it and an
+// example with numbers.
+// - unfiltered + throughput x contribution is the radiance that the path brings to its one pixel,
+//   with weight 1. Reconstruction filters that splat a path into several pixels have no place here:
+//   write the pixel that the camera ray goes through.
+// - throughput: product of f |cos| / pdf over the vertices before x_i, mirrors and glass, over the
+//   probability of each choice there; contribution: what x_i scatters, direct and indirect, without
+//   its emission, which goes to unfiltered, times throughput.
+// - A Russian roulette's weight, 1 / probability, belongs to what comes after it: to throughput
+//   where it was played before x_i, to contribution from x_i on.
+// - visibility: bit l mod 32 is set where the shadow ray from x_i to the sampled point of light l
+//   met nothing. It says which lights are seen, not how much they add.
+
 // ---- Every file ---------------------------------------------------------------------------------
 
 // What a call returns where it does not return 0.

@@ -53,7 +53,8 @@ film::Image make_image(const render::Scene& scene, const render::Camera& camera,
   film::Image image;
   image.width = film.width();
   image.height = film.height();
-  image.add("", "RGB", film.mean());
+  // Of a pixel none of whose paths is shaded, what the shaded ones around it say.
+  image.add("", "RGB", settings.shade_rate > 1 ? film.filled_mean() : film.mean());
   const auto& i = settings.integrator;
   image.attributes = {{"producer", settings.producer},
                       {"scene", scene.name},
@@ -118,13 +119,7 @@ void run(RenderOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const render::Scene scene = render::load_scene(options.scene, options.overrides);
   if (!options.common.quiet) {
-    for (std::string warning : scene.warnings) {
-      // A name in a file may hold what ends a line or what a terminal obeys.
-      std::replace_if(
-          warning.begin(), warning.end(), [](unsigned char c) { return c < ' ' || c == 0x7F; },
-          '?');
-      core::say("note: " + warning);
-    }
+    for (const std::string& warning : scene.warnings) core::say("note: " + warning);
   }
   auto& settings = options.settings;
   settings.producer = std::string("psf-render ") + kVersion;

@@ -150,7 +150,7 @@ void add_sampling(CLI::App& app, RenderOptions& o) {
                             "continue every path so many times from its vertex, store the mean")
       ->group(kGroup);
   add_parsed(app, "--shade-rate", "1/K", "1 or 1/K, K up to 65536",
-             "shade one path in K; the others only have a vertex",
+             "shade one path in K; the others have a vertex and its shadow rays alone",
              [&s](const std::string& text) { return parse_shade_rate(text, s.shade_rate); })
       ->default_str("1")
       ->group(kGroup);

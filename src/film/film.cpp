@@ -1,14 +1,59 @@
 #include "film/film.h"
 
+#include <algorithm>
+
 namespace psf::film {
+namespace {
+
+void set_mean(const double* sum, std::uint64_t count, float* to) {
+  for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(sum[c] / static_cast<double>(count));
+}
+
+// Sums over squares of pixels.
+struct Squares {
+  std::size_t width, height;
+  std::vector<double> sum;  // three each
+  std::vector<std::uint64_t> count;
+
+  [[nodiscard]] Squares twice_as_wide() const {
+    const std::size_t columns = (width + 1) / 2, rows = (height + 1) / 2;
+    Squares larger{columns, rows, std::vector<double>(3 * columns * rows),
+                   std::vector<std::uint64_t>(columns * rows)};
+    for (std::size_t k = 0; k < count.size(); ++k) {
+      const std::size_t to = k / width / 2 * columns + k % width / 2;
+      larger.count[to] += count[k];
+      for (std::size_t c = 0; c < 3; ++c) larger.sum[3 * to + c] += sum[3 * k + c];
+    }
+    return larger;
+  }
+};
+
+}  // namespace
 
 std::vector<float> Film::mean() const {
   std::vector<float> result(sum_.size(), 0.0f);
   for (std::size_t pixel = 0; pixel < count_.size(); ++pixel) {
-    if (count_[pixel] == 0) continue;
-    for (std::size_t k = 3 * pixel; k < 3 * pixel + 3; ++k) {
-      result[k] = static_cast<float>(sum_[k] / static_cast<double>(count_[pixel]));
-    }
+    if (has_path(pixel)) set_mean(&sum_[3 * pixel], count_[pixel], &result[3 * pixel]);
+  }
+  return result;
+}
+
+std::vector<float> Film::filled_mean() const {
+  std::vector<float> result = mean();
+  std::vector<std::size_t> holes;
+  for (std::size_t pixel = 0; pixel < count_.size(); ++pixel) {
+    if (!has_path(pixel)) holes.push_back(pixel);
+  }
+  if (holes.empty()) return result;
+  Squares squares{width_, height_, sum_, count_};
+  for (std::size_t side = 2; !holes.empty() && squares.count.size() > 1; side *= 2) {
+    squares = squares.twice_as_wide();
+    std::erase_if(holes, [&](std::size_t pixel) {
+      const std::size_t k = pixel / width_ / side * squares.width + pixel % width_ / side;
+      if (squares.count[k] == 0) return false;
+      set_mean(&squares.sum[3 * k], squares.count[k], &result[3 * pixel]);
+      return true;
+    });
   }
   return result;
 }

@@ -171,7 +171,7 @@ class Many {
       c_bar.clear();
       for (std::size_t i = 0; i < r_.size(); ++i) {
         const Role role = average.roles[i];
-        if (role != Role::query && role != Role::source) continue;
+        if (!is_query(role)) continue;
         queries.push_back(static_cast<std::uint32_t>(i));
         c_bar.push_back(average.c_bar[i]);
       }

@@ -29,6 +29,26 @@ WeightTerms WeightTerms::none() {
   return terms;
 }
 
+void WeightTerms::switch_off(std::size_t term) {
+  switch (term) {
+    case 0:
+      return normal.reset();
+    case 1:
+      return reflectance.reset();
+    case 2:
+      visibility = false;
+      return;
+    case 3:
+      return hit_distance.reset();
+    case 4:
+      return plane.reset();
+    case 5:
+      return direction.reset();
+    default:
+      material = false;
+  }
+}
+
 void Parameters::validate() const {
   require(std::isfinite(radius.r0) && radius.r0 >= 0, "--r0: the radius must be finite and >= 0");
   require(radius.delta >= 0 && radius.delta < 1,

@@ -55,6 +55,8 @@ struct WeightTerms {
   bool material = false;                     // equal
 
   [[nodiscard]] static WeightTerms none();
+  // By the term's number in kTermNames (weights.h).
+  void switch_off(std::size_t term);
 };
 
 enum class Estimator : std::uint8_t {

@@ -45,6 +45,9 @@ struct Block {
   double n = 1;                         // of [radius]: samples per pixel or blocks up to its end
   double samples_per_pixel = 1;         // within the block, for the estimator `disk` alone
   std::span<const CameraView> cameras;  // at least one
+  // Above 1: one path in so many is shaded, whatever it meets, and the flag kShaded of a record
+  // without vertex says whether it was one of them.
+  std::uint32_t shade_rate = 1;
 };
 
 }  // namespace psf::filter

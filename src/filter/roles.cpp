@@ -30,10 +30,36 @@ bool all_finite(const Vec3& v) {
   return v.x * 0 + v.y * 0 + v.z * 0 == 0;
 }
 
+// Of the records with a vertex those that are shaded; 1 where there is none.
+double shaded_share(const Records& records) {
+  struct Counts {
+    std::uint64_t vertices = 0, shaded = 0;
+  };
+  std::vector<Counts> parts(core::range_count(records.size(), kGrain));
+  core::parallel_for(records.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    Counts& part = parts[begin / kGrain];
+    for (const std::uint8_t flags : records.flags.subspan(begin, end - begin)) {
+      part.vertices += (flags & kHasVertex) != 0 ? 1u : 0u;
+      part.shaded += (flags & kHasVertex) != 0 && (flags & kShaded) != 0 ? 1u : 0u;
+    }
+  });
+  Counts all;
+  for (const Counts& part : parts) {
+    all.vertices += part.vertices;
+    all.shaded += part.shaded;
+  }
+  return all.vertices == 0 ? 1
+                           : static_cast<double>(all.shaded) / static_cast<double>(all.vertices);
+}
+
 class Classifier {
  public:
   Classifier(const Records& records, const Block& block, const Parameters& parameters)
-      : r_(records), block_(block), k_(parameters.sources), demodulate_(parameters.demodulate) {
+      : r_(records),
+        block_(block),
+        k_(parameters.sources),
+        shaded_share_(block.shade_rate > 1 ? 1 : shaded_share(records)),
+        demodulate_(parameters.demodulate) {
     const WeightTerms& weights = parameters.weights;
     const bool disk = parameters.estimator == Estimator::disk;
     distance_ = disk || parameters.radius.basis != RadiusBasis::world;
@@ -53,10 +79,11 @@ class Classifier {
       const bool vertex = (r_.flags[i] & kHasVertex) != 0;
       const bool source = vertex && is_source(i);
       const std::uint32_t bits = bad_channels(i, vertex, source);
-      of[i] = bits != 0 ? Role::left_out
-              : source  ? Role::source
-              : vertex  ? Role::query
-                        : Role::no_vertex;
+      of[i] = bits != 0     ? Role::left_out
+              : source      ? Role::source
+              : vertex      ? Role::query
+              : is_input(i) ? Role::no_vertex
+                            : Role::unchosen;
       if (bits != 0) count(bits, statistics);
       statistics.queries += bits == 0 && vertex ? 1 : 0;
       statistics.sources += bits == 0 && source ? 1 : 0;
@@ -69,10 +96,22 @@ class Classifier {
   [[nodiscard]] bool is_source(std::size_t i) const {
     return (r_.flags[i] & kShaded) != 0 && (k_ == 1 || chosen(i));
   }
+  // Of a record without vertex: whether it would be a source if it had one.
+  [[nodiscard]] bool is_input(std::size_t i) const {
+    if (block_.shade_rate > 1) return is_source(i);
+    if (shaded_share_ == 1) return k_ == 1 || chosen(i);
+    return is_chosen(x_of(i), y_of(i), pass_of(i), shaded_share_ / k_);
+  }
   [[nodiscard]] bool chosen(std::size_t i) const {
-    const CameraView& camera = block_.cameras[r_.camera.empty() ? 0 : r_.camera[i]];
-    const std::uint32_t x = r_.pixel[i] % camera.width, y = r_.pixel[i] / camera.width;
-    return is_chosen(x, y, (block_.first_path + i) / pixels_, k_);
+    return is_chosen(x_of(i), y_of(i), pass_of(i), k_);
+  }
+  [[nodiscard]] std::uint32_t x_of(std::size_t i) const { return r_.pixel[i] % width_of(i); }
+  [[nodiscard]] std::uint32_t y_of(std::size_t i) const { return r_.pixel[i] / width_of(i); }
+  [[nodiscard]] std::uint32_t width_of(std::size_t i) const {
+    return block_.cameras[r_.camera.empty() ? 0 : r_.camera[i]].width;
+  }
+  [[nodiscard]] std::uint64_t pass_of(std::size_t i) const {
+    return (block_.first_path + i) / pixels_;
   }
 
   static void count(std::uint32_t bits, Statistics& statistics) {
@@ -106,6 +145,7 @@ class Classifier {
   const Records& r_;
   const Block& block_;
   std::uint32_t k_;
+  double shaded_share_;  // of the records without vertex that count, for all that is known
   bool demodulate_;
   bool distance_, normal_, reflectance_, hit_distance_, direction_;
   std::uint64_t pixels_ = 0;

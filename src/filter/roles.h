@@ -14,9 +14,20 @@ namespace psf::filter {
 enum class Role : std::uint8_t {
   left_out,   // a value in use is not finite: no part of averages nor pictures
   no_vertex,  // contributes u_i alone
-  query,      // has x_i but no c_i: gets an average, gives none
+  unchosen,   // the same, but that no part of the picture without filter is made of it
+  query,      // has x_i but no c_i: gets an average, gives none, and no part of that picture either
   source      // gets and gives
 };
+
+// Has a vertex, and is in use.
+[[nodiscard]] inline bool is_query(Role role) {
+  return role == Role::query || role == Role::source;
+}
+// The picture without filter is the mean of these paths. Whether a path is among them does not
+// depend on whether it has a vertex, so no path weighs more than another.
+[[nodiscard]] inline bool is_input(Role role) {
+  return role == Role::no_vertex || role == Role::source;
+}
 
 struct Roles {
   std::vector<Role> of;  // by record

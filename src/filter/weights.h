@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string_view>
 
 #include "filter/parameters.h"
 #include "filter/records.h"
@@ -15,6 +16,16 @@ inline constexpr std::size_t kTermCount = 7;
 // In the order of WeightTerms; the names are those of the options.
 inline constexpr std::array<const char*, kTermCount> kTermNames = {
     "normal", "reflectance", "visibility", "hit-distance", "plane", "direction", "material"};
+
+// A bit for each term of kTermNames.
+using TermSet = std::uint32_t;
+
+// The number of the term that an option, "--normal", belongs to; kTermCount where it is none's.
+[[nodiscard]] inline std::size_t term_of(std::string_view option) {
+  std::size_t k = 0;
+  while (k < kTermCount && !(option.starts_with("--") && option.substr(2) == kTermNames[k])) ++k;
+  return k;
+}
 
 [[nodiscard]] inline bool normal_term(const Vec3& n_i, const Vec3& n_j, float t) {
   return dot(n_i, n_j) >= t;

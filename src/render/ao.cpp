@@ -42,7 +42,10 @@ PathRecord AoIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool sha
     }
     transport_.record_vertex(v, walk, record);
     record.roughness = 1;  // occlusion is the same from wherever it is looked at
-    if (!shade) return record;
+    if (!shade) {
+      record.hit_distance = std::numeric_limits<float>::quiet_NaN();
+      return record;
+    }
     record.shaded = true;
     std::uint32_t open = 0;
     for (std::uint32_t k = 0; k < settings.split; ++k) {

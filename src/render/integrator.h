@@ -47,7 +47,7 @@ struct Ray {
 // the world.
 struct PathRecord {
   bool has_vertex = false;    // x_i exists
-  bool shaded = false;        // c_i was computed
+  bool shaded = false;        // c_i was computed, or would have been
   Vec3 position{0, 0, 0};     // x_i
   Vec3 normal{0, 0, 0};       // n_i, unit shading normal on the side of the camera
   Rgb reflectance{0, 0, 0};   // rho_i, albedo
@@ -56,8 +56,8 @@ struct PathRecord {
   Rgb unfiltered{0, 0, 0};    // u_i
   float distance = 0;         // d_i, length of the camera segment
   std::uint32_t visibility = 0;  // bit l mod 32 set: light l was seen from x_i
-  float hit_distance =
-      0;  // length of the first ray scattered from x_i; infinity for a miss or absorption
+  float hit_distance = 0;  // length of the first ray scattered from x_i; infinity for a miss or
+                           // absorption; NaN where there was none, because the path is not shaded
   Vec3 direction{0, 0, 0};     // unit, from x_i toward where the camera segment came from
   std::uint32_t material = 0;  // index in Scene::materials
   float roughness = 0;         // perceptual; 1 for diffuse

@@ -48,7 +48,13 @@ PathRecord PathIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool s
     if (v.bsdf.black()) return record;
     if (transport_.select_lobe(v, walk, sampler)) {
       transport_.record_vertex(v, walk, record);
-      if (!shade) return record;
+      if (!shade) {
+        // Whom it may be averaged with must be known: the same shadow rays, and nothing else.
+        static_cast<void>(transport_.direct(v, transport_.samples_every_light(), sampler,
+                                            record.visibility, rays));
+        record.hit_distance = std::numeric_limits<float>::quiet_NaN();
+        return record;
+      }
       record.shaded = true;
       const std::uint32_t split = settings.split;
       if (split <= 1) {

@@ -130,14 +130,11 @@ void Recorder::load(const formats::Reader& reader, std::uint64_t first, std::siz
 
 std::uint64_t Recorder::add_to(film::Film& film, std::size_t count,
                                std::uint32_t shade_rate) const {
-  const auto factor = static_cast<float>(shade_rate);
   std::uint64_t left_out = 0;
   for (std::size_t i = 0; i < count; ++i) {
+    if (shade_rate > 1 && (flags_[i] & kShadedFlag) == 0) continue;
     Rgb radiance = unfiltered_[i];
-    if ((flags_[i] & kHasVertexFlag) != 0) {
-      const Rgb filtered = throughput_[i] * contribution_[i];
-      radiance += shade_rate == 1 ? filtered : filtered * factor;
-    }
+    if ((flags_[i] & kHasVertexFlag) != 0) radiance += throughput_[i] * contribution_[i];
     if (is_finite(radiance)) {
       film.add(pixel_[i], radiance);
     } else {

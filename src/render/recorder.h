@@ -38,9 +38,9 @@ class Recorder {
   // record_channels(), from `first` on. Throws what the reader throws.
   void load(const formats::Reader& reader, std::uint64_t first, std::size_t count);
 
-  // Adds u + alpha * c * shade_rate of the first `count` records, in order; where one path in
-  // shade_rate is shaded the factor keeps the mean. Non-finite values are left out; returns how
-  // many.
+  // Adds u + alpha * c of the first `count` records, in order; where one path in `shade_rate` > 1
+  // is shaded, of those that have the flag, with a vertex or without: of what meets no surface no
+  // more is to count than of what does. Non-finite values are left out; returns how many.
   std::uint64_t add_to(film::Film& film, std::size_t count, std::uint32_t shade_rate) const;
 
  private:

@@ -199,8 +199,10 @@ void Loop::trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path
     position = Vec2(static_cast<float>(plane_x), static_cast<float>(plane_y));
   }
   const Vec2 lens = view.rays.has_lens() ? sampler.next_2d() : Vec2(0, 0);
-  const PathRecord record = integrator_.trace(view.rays.ray(position, lens), sampler,
-                                              shade_rate_.shaded(x, y, pass), rays);
+  const bool shade = shade_rate_.shaded(x, y, pass);
+  PathRecord record = integrator_.trace(view.rays.ray(position, lens), sampler, shade, rays);
+  // Without a vertex it is not shaded either way; the flag says that it counts.
+  if (!record.has_vertex && settings_.shade_rate > 1) record.shaded = shade;
   recorder.set(slot, camera, y * view.width + x, in_world(record, space_));
 }
 

@@ -54,6 +54,7 @@ formats::Head make_head(const Scene& scene, const Integrator& integrator,
   metadata.seed = settings.sampler.seed;
   metadata.block_base = block_base(settings.sampler.kind);
   metadata.split = settings.integrator.split;
+  metadata.shade_rate = settings.shade_rate;
   metadata.vertex_roughness = double{settings.integrator.vertex_roughness};
   metadata.vertex_rule = fmt::format(
       "the first vertex of the camera path with a perceptual roughness of at least {} (diffuse: "

@@ -38,6 +38,10 @@ formats::Metadata metadata_of(const formats::Reader& reader) {
   }
 }
 
+std::string called(const formats::CameraInfo& camera) {
+  return camera.name.empty() ? "its camera" : fmt::format("camera \"{}\"", camera.name);
+}
+
 // Floats of any width are taken, integers only as the format has them.
 bool is_float(Type type) {
   return type == Type::f16 || type == Type::f32 || type == Type::f64;
@@ -48,14 +52,16 @@ bool is_float(Type type) {
 Dump::Dump(const std::string& path) : reader_(path), metadata_(metadata_of(reader_)) {
   if (metadata_.cameras.empty()) {
     throw Error(ErrorCode::bad_input,
-                path + ": the metadata name no camera; a picture needs its width and height");
+                path +
+                    ": the metadata name no camera; a picture needs its size: write "
+                    "\"cameras\": [{\"width\": W, \"height\": H, \"angle_per_pixel\": A}]");
   }
   for (const formats::CameraInfo& camera : metadata_.cameras) {
     if (camera.width == 0 || camera.height == 0 ||
         std::uint64_t{camera.width} * camera.height > kMaxPixels - pixels_) {
       throw Error(ErrorCode::bad_input,
-                  fmt::format("{}: camera \"{}\": {} x {} is no size for a picture", path,
-                              camera.name, camera.width, camera.height));
+                  fmt::format("{}: {}: {} x {} is no size for a picture", path, called(camera),
+                              camera.width, camera.height));
     }
     cameras_.push_back({camera.width, camera.height, camera.angle_per_pixel});
     pixels_ += std::uint64_t{camera.width} * camera.height;
@@ -109,9 +115,10 @@ void Dump::require_angles() const {
   for (const formats::CameraInfo& camera : metadata_.cameras) {
     if (std::isfinite(camera.angle_per_pixel) && camera.angle_per_pixel > 0) continue;
     throw Error(ErrorCode::bad_input,
-                fmt::format("{}: camera \"{}\" has no angle per pixel, which a radius in pixels "
-                            "needs; give the radius as a fraction of the distance, --r0 0.02",
-                            reader_.path(), camera.name));
+                fmt::format("{}: {} has no angle per pixel, which a radius in pixels needs; write "
+                            "\"angle_per_pixel\", in radians, into the metadata, or give the "
+                            "radius as a fraction of the distance, --r0 0.02",
+                            reader_.path(), called(camera)));
   }
 }
 
@@ -225,12 +232,10 @@ void Dump::check_pixels(const filter::PathRange& range, const BlockRecords& reco
             "{}: record {}: camera {} does not exist, the metadata name {}; render it again",
             reader_.path(), range.first + i, camera, cameras_.size()));
   }
-  throw Error(
-      ErrorCode::bad_input,
-      fmt::format(
-          "{}: record {}: pixel {} is outside the {} x {} of camera \"{}\"; render it again",
-          reader_.path(), range.first + i, records.pixel[i], cameras_[camera].width,
-          cameras_[camera].height, metadata_.cameras[camera].name));
+  throw Error(ErrorCode::bad_input,
+              fmt::format("{}: record {}: pixel {} is outside the {} x {} of {}; render it again",
+                          reader_.path(), range.first + i, records.pixel[i], cameras_[camera].width,
+                          cameras_[camera].height, called(metadata_.cameras[camera])));
 }
 
 }  // namespace psf::study

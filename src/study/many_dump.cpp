@@ -33,6 +33,15 @@ MemoryRequest request_of(const ManyRun& run, std::size_t last, std::size_t radii
           filter::kManyBytesPerRecord};
 }
 
+// With the distance, which tells how many pixels a radius is, whatever its unit.
+ChannelSet channels_of(const Dump& dump, const ManyRun& run) {
+  filter::Parameters parameters = run.parameters;
+  if (parameters.radius.basis == filter::RadiusBasis::world) {
+    parameters.radius.basis = filter::RadiusBasis::distance;
+  }
+  return dump.select(parameters, false);
+}
+
 class ManyRunner {
  public:
   ManyRunner(const Dump& dump, const ManyRun& run)
@@ -40,7 +49,7 @@ class ManyRunner {
         run_(run),
         first_(run.passes.first),
         last_(last_pass(dump, run.passes)),
-        channels_(dump.select(run.parameters, false)),
+        channels_(channels_of(dump, run)),
         reader_(dump, channels_) {
     check_parts();
     outcome_.memory = plan_memory(dump_, channels_, request_of(run_, last_, run_.radii.size()));
@@ -143,7 +152,7 @@ class ManyRunner {
     double sum = 0;
     std::uint64_t count = 0;
     for (std::size_t i = 0; i < records.size(); ++i) {
-      if (roles[i] != filter::Role::query && roles[i] != filter::Role::source) continue;
+      if (!filter::is_query(roles[i])) continue;
       const std::size_t camera = records.camera.empty() ? 0 : records.camera[i];
       const double footprint = block.cameras[camera].angle_per_pixel * double{records.distance[i]};
       if (!(footprint > 0)) continue;
@@ -172,7 +181,7 @@ ManyOutcome filter_many(const Dump& dump, const ManyRun& run) {
 
 std::size_t radii_at_once(const Dump& dump, const ManyRun& run) {
   const std::size_t last = last_pass(dump, run.passes);
-  const ChannelSet channels = dump.select(run.parameters, false);
+  const ChannelSet channels = channels_of(dump, run);
   std::size_t radii = run.radii.size();
   while (radii > 1 && !fits_memory(dump, channels, request_of(run, last, radii))) {
     radii = (radii + 1) / 2;

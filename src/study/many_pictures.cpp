@@ -118,9 +118,10 @@ std::vector<Rgb> ManyPictures::filtered(std::size_t k) const {
 }
 
 std::vector<Rgb> ManyPictures::unfiltered() const {
-  const std::vector<float> values = input_.mean();
-  std::vector<Rgb> picture(paths_.size());
+  const std::vector<float> values = input_.filled_mean();
+  std::vector<Rgb> picture(paths_.size(), Rgb(0, 0, 0));
   for (std::size_t pixel = 0; pixel < picture.size(); ++pixel) {
+    if (paths_[pixel] == 0) continue;
     picture[pixel] = Rgb(values[3 * pixel], values[3 * pixel + 1], values[3 * pixel + 2]);
   }
   return picture;

@@ -24,7 +24,7 @@ class ManyPictures {
 
   // (height, width) of radius k: the picture that CameraPictures gives, but for rounding.
   [[nodiscard]] std::vector<Rgb> filtered(std::size_t k) const;
-  // (height, width) of the same paths without filter.
+  // (height, width) of the same paths without filter, as CameraPictures has it.
   [[nodiscard]] std::vector<Rgb> unfiltered() const;
 
   // Radii that are added together.

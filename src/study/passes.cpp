@@ -27,7 +27,7 @@ filter::Block describe_block(const Dump& dump, const filter::Blocks& blocks, std
   // Paths enumerated by pixel fill whole pixels even where the block is less than a pass.
   const bool global = dump.metadata().enumeration == "global";
   return {range.first, count == filter::RadiusCount::samples ? samples : static_cast<double>(k + 1),
-          global ? within : std::max(1.0, within), dump.cameras()};
+          global ? within : std::max(1.0, within), dump.cameras(), dump.metadata().shade_rate};
 }
 
 }  // namespace psf::study

@@ -1,5 +1,6 @@
 #include "study/pictures.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "study/pixel_bands.h"
@@ -36,10 +37,10 @@ bool CameraPictures::add(const filter::Records& records, const filter::Average& 
   if (role == filter::Role::left_out) return true;
   const std::uint32_t pixel = records.pixel[i];
   const Rgb u = records.unfiltered.empty() ? Rgb(0, 0, 0) : records.unfiltered[i];
-  const bool vertex = role != filter::Role::no_vertex;
+  const bool vertex = filter::is_query(role);
   if (!vertex) {
     filtered_.add(pixel, u);
-    unfiltered_.add(pixel, u);
+    if (filter::is_input(role)) unfiltered_.add(pixel, u);
   } else {
     const Rgb& alpha = records.throughput[i];
     const Rgb filtered = path_radiance(u, alpha, average.c_bar[i]);
@@ -66,12 +67,20 @@ void CameraPictures::add_guides(const filter::Records& records, std::size_t i, b
   }
 }
 
+std::vector<float> CameraPictures::unfiltered() const {
+  std::vector<float> values = unfiltered_.filled_mean();
+  for (std::size_t pixel = 0; pixel < values.size() / 3; ++pixel) {
+    if (!filtered_.has_path(pixel)) std::fill_n(&values[3 * pixel], 3, 0.0f);
+  }
+  return values;
+}
+
 film::Image CameraPictures::image() const {
   film::Image image;
   image.width = filtered_.width();
   image.height = filtered_.height();
   image.add("", "RGB", filtered_.mean());
-  image.add("unfiltered-input.", "RGB", unfiltered_.mean());
+  image.add("unfiltered-input.", "RGB", unfiltered());
   const std::vector<float> details = details_.mean();
   image.add("neighbors.", "Y", component(details, 0));
   image.add("radius.", "Y", component(details, 1));

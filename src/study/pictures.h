@@ -22,9 +22,10 @@ class CameraPictures {
   bool add(const filter::Records& records, const filter::Average& average,
            std::span<const float> radius, std::size_t i);
 
-  // R, G, B filtered; unfiltered-input.R/G/B of the same paths, without those that have no
-  // contribution of their own; neighbors.Y and radius.Y, means over the paths with a vertex;
-  // albedo.R/G/B and normal.X/Y/Z where asked for, 0 where a path has no vertex.
+  // R, G, B filtered; unfiltered-input.R/G/B of those of the same paths that is_input() names, a
+  // pixel that has none of these filled as film::Film::filled_mean() has it; neighbors.Y and
+  // radius.Y, means over the paths with a vertex; albedo.R/G/B and normal.X/Y/Z where asked for, 0
+  // where a path has no vertex.
   [[nodiscard]] film::Image image() const;
 
   // Bytes a pixel: of the sums, and what image() and writing it take for a moment.
@@ -32,6 +33,7 @@ class CameraPictures {
   static constexpr std::uint64_t kBytesToWrite = 2 * 14 * sizeof(float);
 
  private:
+  [[nodiscard]] std::vector<float> unfiltered() const;
   void add_guides(const filter::Records& records, std::size_t i, bool vertex);
 
   film::Film filtered_, unfiltered_;

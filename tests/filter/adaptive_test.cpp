@@ -19,10 +19,13 @@ using tests::RecordSet;
 Moments moments_of(const std::vector<double>& values, std::size_t count) {
   Moments m{static_cast<std::uint32_t>(count), 0, 0};
   for (std::size_t k = 0; k < count; ++k) {
-    m.mean += values[k] / double(count);
-    m.mean_sq += values[k] * values[k] / double(count);
+    m.sum += values[k];
+    m.sum_sq += values[k] * values[k];
   }
   return m;
+}
+Moments with_means(std::uint32_t count, double mean, double mean_sq) {
+  return {count, count * mean, count * mean_sq};
 }
 
 // The share of cases in which a ball of `inside` and what is around it, `beyond`, do not agree.
@@ -93,13 +96,32 @@ TEST_CASE("Paths with a long tail stop balls more often than normal noise, withi
 }
 
 TEST_CASE("Few contributions and equal ones always agree; so does what is no number") {
-  const Moments few{63, 1, 1}, more{900, 9, 81.5};
-  CHECK(filter::agrees(few, more, 0.1));
-  CHECK(filter::agrees({64, 1, 1}, {127, 9, 81}, 0.1));
-  CHECK(filter::agrees({64, 0.1f, 0.1f * 0.1f}, {500, 0.1f, 0.1f * 0.1f}, 0.1));
-  CHECK_FALSE(filter::agrees({64, 1, 1}, {500, 2, 4.1}, 3));
+  CHECK(filter::agrees(with_means(63, 1, 1), with_means(900, 9, 81.5), 0.1));
+  CHECK(filter::agrees(with_means(64, 1, 1), with_means(127, 9, 81), 0.1));
+  const double tenth = double{0.1f};
+  CHECK(filter::agrees(with_means(64, tenth, tenth * tenth), with_means(500, tenth, tenth * tenth),
+                       0.1));
+  CHECK_FALSE(filter::agrees(with_means(64, 1, 1), with_means(500, 2, 4.1), 3));
   const double infinity = std::numeric_limits<double>::infinity();
-  CHECK(filter::agrees({64, 1, infinity}, {500, 2, infinity}, 3));
+  CHECK(filter::agrees(with_means(64, 1, infinity), with_means(500, 2, infinity), 3));
+  CHECK(filter::agrees(with_means(64, infinity, 1), with_means(500, infinity, 1), 3));
+}
+
+TEST_CASE("Below the threshold a ball grows, above it stops, however near") {
+  // 64 values each, of spread 1 around 3 and around 3 + step.
+  const double standard_error = std::sqrt(2.0 / 63);
+  for (const double agree : {0.5, 1.0, 3.0}) {
+    for (const double off : {1e-3, 1e-6, 1e-9}) {
+      for (const bool beyond : {false, true}) {
+        const double step = agree * standard_error * (beyond ? 1 + off : 1 - off);
+        std::vector<double> values;
+        for (std::size_t k = 0; k < 128; ++k)
+          values.push_back((k < 64 ? 3 : 3 + step) + (k % 2 == 0 ? 1 : -1));
+        INFO("agree " << agree << ", off " << off);
+        CHECK(filter::agrees(moments_of(values, 64), moments_of(values, 128), agree) != beyond);
+      }
+    }
+  }
 }
 
 // A square of noise around 1 on the left and 3 on the right.
@@ -150,6 +172,64 @@ TEST_CASE("Where nothing tells records apart every radius is the largest, and c_
   const filter::Average adaptive = run(set);
   CHECK(adaptive.radius == std::vector<float>(set.size(), 0.2f));
   CHECK(tests::same_bytes(adaptive.c_bar, EstimatorRun(Estimator::average, 0.2)(set).c_bar));
+}
+
+// [adaptive] a second time, from the page alone: for every record its radius, and how many tests
+// came within a thousandth above the threshold.
+struct Chosen {
+  std::vector<float> radius;
+  std::size_t near = 0;
+};
+Chosen by_the_page(const RecordSet& set, float r, double agree) {
+  Chosen chosen;
+  constexpr int kRadii = 8;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    float radius[kRadii];
+    long double count[kRadii] = {}, sum[kRadii] = {}, sum_sq[kRadii] = {};
+    for (int k = 0; k < kRadii; ++k)
+      radius[k] = static_cast<float>(double{r} * std::pow(2.0, -0.5 * (kRadii - 1 - k)));
+    for (std::size_t j = 0; j < set.size(); ++j) {
+      const float dx = set.position[i].x - set.position[j].x,
+                  dy = set.position[i].y - set.position[j].y,
+                  dz = set.position[i].z - set.position[j].z;
+      const float d_sq = dx * dx + dy * dy + dz * dz;
+      const Rgb& c = set.contribution[j];
+      const long double y = 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
+      for (int k = kRadii - 1; k >= 0 && (i == j || d_sq < radius[k] * radius[k]); --k) {
+        count[k] += 1;
+        sum[k] += y;
+        sum_sq[k] += y * y;
+      }
+    }
+    int k = 0;
+    for (; k + 1 < kRadii; ++k) {
+      const long double inside = count[k], beyond = count[k + 1] - inside;
+      if (inside < 64 || beyond < 64) continue;
+      const long double mean = sum[k] / inside, ring = (sum[k + 1] - sum[k]) / beyond;
+      const long double spread = sum_sq[k] / inside - mean * mean,
+                        ring_spread = (sum_sq[k + 1] - sum_sq[k]) / beyond - ring * ring;
+      const long double t =
+          std::abs(ring - mean) / std::sqrt(spread / (inside - 1) + ring_spread / (beyond - 1));
+      chosen.near += t > agree && t < 1.001 * agree ? 1u : 0u;
+      if (t > agree) break;
+    }
+    chosen.radius.push_back(radius[k]);
+  }
+  return chosen;
+}
+
+TEST_CASE("Radii are those of the page, to the last record, by every search") {
+  RecordSet set = step_of_noise(9000, 1.1f);
+  std::mt19937 random(8);
+  std::exponential_distribution<float> tail;
+  for (Rgb& c : set.contribution) c = Rgb(c.x, tail(random), 0.5f * c.x);
+  EstimatorRun run(Estimator::adaptive, 0.3);
+  run.parameters.agree = 1;
+  const Chosen right = by_the_page(set, 0.3f, 1);
+  CHECK(right.near > 5);
+  CHECK(run(set).radius == right.radius);
+  run.parameters.search = search::Kind::plain;
+  CHECK(run(set).radius == right.radius);
 }
 
 TEST_CASE("Every engine chooses the same radii") {

@@ -35,6 +35,7 @@ TEST_CASE("metadata survives JSON exactly") {
   in.seed = 0xFFFFFFFFFFFFFFFFu;
   in.block_base = 3;
   in.split = 16;
+  in.shade_rate = 4;
   in.vertex_roughness = 0.1 + 0.2;
   in.vertex_rule = "first diffuse";
   in.units = "m";
@@ -56,6 +57,7 @@ TEST_CASE("metadata survives JSON exactly") {
   CHECK(out.seed == in.seed);
   CHECK(out.block_base == in.block_base);
   CHECK(out.split == in.split);
+  CHECK(out.shade_rate == in.shade_rate);
   CHECK(out.vertex_roughness == in.vertex_roughness);
   CHECK(out.vertex_rule == in.vertex_rule);
   CHECK(out.units == in.units);

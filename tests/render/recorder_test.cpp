@@ -86,7 +86,13 @@ TEST_CASE("the picture gets u + alpha c, c only where there is a vertex, and no 
   film::Film film(3, 1);
   CHECK(recorder.add_to(film, 3, 1) == 1);
   CHECK(film.mean() == std::vector<float>{0, 0, 0, 2, 3, 4, 1, 0, 0});
-  film::Film compensated(3, 1);
-  CHECK(recorder.add_to(compensated, 2, 4) == 0);
-  CHECK(compensated.mean() == std::vector<float>{0, 0, 0, 5, 12, 16, 1, 0, 0});
+  // Where one path in four is shaded only such paths count, with a vertex or without.
+  record.unfiltered = Rgb(8, 8, 8);
+  record.shaded = false;
+  recorder.set(2, 0, 2, record);
+  record.has_vertex = true;
+  recorder.set(3, 0, 1, record);
+  film::Film thinned(3, 1);
+  CHECK(recorder.add_to(thinned, 4, 4) == 0);
+  CHECK(thinned.mean() == std::vector<float>{0, 0, 0, 2, 3, 4, 1, 0, 0});
 }

@@ -102,7 +102,7 @@ NoiseShare share_of(const RecordSet& set, const std::string& path) {
 TEST_CASE("The parts of the noise agree with their definition, for each camera") {
   const tests::TempFolder folder;
   const std::vector<filter::CameraView> cameras = {{16, 8, 0.05}, {8, 9, 0.1}};
-  const RecordSet set = tests::random_records(2000, 5, 0.3, cameras);
+  const RecordSet set = tests::random_records(2000, 5, 0, cameras);
   tests::write_dump(folder / "a.pvb", set, {cameras, {700, 700, 600}, {}});
   const auto with_threads = [&](std::size_t threads) {
     const core::ThreadLimit limit(threads);

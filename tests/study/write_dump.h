@@ -18,6 +18,7 @@ struct DumpOptions {
   std::string enumeration = "pixel";
   formats::Codec codec = formats::Codec::zstd;
   std::uint32_t chunk_capacity = 100;
+  std::uint32_t shade_rate = 1;
 };
 
 inline void write_dump(const std::string& path, const RecordSet& set, const DumpOptions& options) {
@@ -25,6 +26,7 @@ inline void write_dump(const std::string& path, const RecordSet& set, const Dump
   metadata.scene_hash = "abc";
   metadata.seed = 17;
   metadata.enumeration = options.enumeration;
+  metadata.shade_rate = options.shade_rate;
   for (const filter::CameraView& camera : options.cameras) {
     formats::CameraInfo info;
     info.name = "camera " + std::to_string(metadata.cameras.size());

@@ -18,6 +18,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/unfinished.h"
+#include "filter_options.h"
 #include "formats/error.h"
 #include "parameter_lists.h"
 #include "study/analytic.h"
@@ -83,8 +84,8 @@ void refuse_to_overwrite(const std::string& folder) {
   }
 }
 
-void run_dumps(const ConvergeOptions& options) {
-  const std::vector<filter::Parameters> sets = all_sets(options.lists);
+void run_dumps(const ConvergeOptions& options, filter::TermSet asked) {
+  std::vector<filter::Parameters> sets = all_sets(options.lists);
   const study::Dump dump(options.inputs.front());
   const StudyFolder folder(options.study, dump);
   refuse_to_overwrite(folder.path());
@@ -104,6 +105,7 @@ void run_dumps(const ConvergeOptions& options) {
   report.reference = study::describe_reference(options.study.reference, folder.reference_picture());
   for (const std::string& path : options.inputs) {
     const study::Dump replicate(path);
+    fit_terms(replicate, sets, asked, options.common.quiet);
     report.inputs.push_back(
         study::describe_input(replicate, {0, folder.passes().last}, folder.camera()));
   }
@@ -246,7 +248,7 @@ bool run_analytic(const ConvergeOptions& options, study::AnalyticScene which,
                      [](const study::SlopeCheck& check) { return check.passed; });
 }
 
-void run(const ConvergeOptions& options) {
+void run(const ConvergeOptions& options, filter::TermSet asked) {
   keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
   if (!options.analytic) {
@@ -254,7 +256,7 @@ void run(const ConvergeOptions& options) {
       throw Error(ErrorCode::usage,
                   "converge: give a dump and --reference, or --analytic; see psf converge --help");
     }
-    return run_dumps(options);
+    return run_dumps(options, asked);
   }
   ParameterLists lists;
   lists.r0 = options.lists.r0.empty() ? "12px" : options.lists.r0;
@@ -306,7 +308,7 @@ void add_converge(CLI::App& app) {
   set_example(*command,
               "psf converge a.pvb b.pvb c.pvb --reference reference.exr --r0 8px,16px --delta "
               "0.33,0.5 -o converge");
-  command->callback([options] { run(*options); });
+  command->callback([options, command] { run(*options, asked_terms(*command)); });
 }
 
 }  // namespace psf::tools

@@ -71,12 +71,13 @@ study::ExplainRequest request_of(const ExplainOptions& options) {
   return request;
 }
 
-void run(const ExplainOptions& options) {
+void run(const ExplainOptions& options, filter::TermSet asked) {
   const core::ThreadLimit threads(options.common.threads);
   study::ExplainRequest request = request_of(options);
   check_files({options.input}, {options.common.json, options.ply});
   const study::Dump dump(options.input);
   request.camera = camera_of(options, dump);
+  fit_terms(dump, {&request.parameters, 1}, asked, options.common.quiet);
 
   core::Progress bar("explain", kProgressSteps, options.common.quiet);
   request.on_progress = [&bar](std::uint64_t done, std::uint64_t total) {
@@ -124,7 +125,7 @@ void add_explain(CLI::App& app) {
   add_common(*command, options.common);
   wrap_descriptions(*command);
   set_example(*command, "psf explain scene.pvb --pixel 120,88 --visibility=off --ply pixel.ply");
-  command->callback([shared] { run(*shared); });
+  command->callback([shared, command] { run(*shared, asked_terms(*command)); });
 }
 
 }  // namespace psf::tools

@@ -180,6 +180,10 @@ class Writer {
     put("hit_distance", v.hit_distance, real);
     put("direction", v.direction, vec);
     put("material", v.material, as_is);
+    if (!v.material.empty()) {
+      const std::string name = material_name(report_.dump, v.material[i]);
+      if (!name.empty()) row["material_name"] = name;
+    }
     return row;
   }
 

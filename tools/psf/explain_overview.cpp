@@ -131,8 +131,15 @@ class Overview {
            point(v_.reflectance[first]) +
                (reflectance < 5e-4 ? "" : fmt::format(", others off by {:.3f}", reflectance)));
     }
-    if (!v_.material.empty()) line("material", fmt::format("{}", fmt::join(materials, ", ")));
+    if (!v_.material.empty()) line("material", named(materials));
     if (!v_.visibility.empty()) line("lights", seen(lights));
+  }
+  [[nodiscard]] std::string named(const std::set<std::uint32_t>& materials) const {
+    std::string text;
+    for (const std::uint32_t material : materials) {
+      text += (text.empty() ? "" : ", ") + material_text(report_.dump, material);
+    }
+    return text;
   }
   [[nodiscard]] std::string seen(const std::set<std::uint32_t>& lights) const {
     if (lights.size() > 2) return fmt::format("{} different sets are seen", lights.size());

@@ -159,10 +159,7 @@ class Tables {
           e_.record[source.vertex], e_.pass[source.vertex], fmt::format("{},{}", x, y),
           luminance(source.excess), percent(luminance(source.share), luminance(w_.pixel.filtered)),
           pair.distance, cell(v_.normal, 1, f.angle.value_or(0)),
-          cell(v_.reflectance, 3, f.reflectance.value_or(0)), lights(pair, f),
-          !f.material   ? "-"
-          : *f.material ? "other"
-                        : "same",
+          cell(v_.reflectance, 3, f.reflectance.value_or(0)), lights(pair, f), material(pair, f),
           cell(v_.normal, 2, f.plane.value_or(0)));
     }
     rest(w_.sources.size());
@@ -178,6 +175,16 @@ class Tables {
                                          : "other";
     constexpr std::size_t kWidth = 8;
     return text.size() <= kWidth ? text : "other";
+  }
+
+  // What the source is of, where that is another than the vertex is of.
+  [[nodiscard]] std::string material(const study::ExplainedPair& pair,
+                                     const study::PairFeatures& features) const {
+    if (!features.material) return "-";
+    if (!*features.material) return "same";
+    const std::string name = material_name(report_.dump, v_.material[pair.vertex]);
+    constexpr std::size_t kWidth = 9;
+    return name.empty() || name.size() > kWidth ? "other" : name;
   }
 
   void paths() {

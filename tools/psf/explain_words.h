@@ -45,6 +45,17 @@ inline std::string shown(std::string text) {
   return text;
 }
 
+// Empty where the dump has no name for it.
+inline std::string material_name(const study::Dump& dump, std::uint32_t material) {
+  const auto& names = dump.metadata().materials;
+  return material < names.size() ? shown(names[material]) : "";
+}
+// "wall (3)", or "3".
+inline std::string material_text(const study::Dump& dump, std::uint32_t material) {
+  const std::string name = material_name(dump, material);
+  return name.empty() ? fmt::format("{}", material) : fmt::format("{} ({})", name, material);
+}
+
 // Light l owns bit l mod 32.
 inline std::string lights_text(const study::Dump& dump, std::uint32_t bits) {
   std::string text;

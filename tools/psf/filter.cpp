@@ -166,19 +166,23 @@ void wait_for_first_pass(const std::string& path) {
   }
 }
 
-void run(const FilterOptions& options) {
+void run(const FilterOptions& options, filter::TermSet asked) {
   const auto start = Clock::now();
   keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
   study::FilterRun run;
   FilterOptions chosen = options;
-  if (!options.tuned.empty()) read_tuned(options.tuned, chosen);
+  if (!options.tuned.empty()) {
+    read_tuned(options.tuned, chosen);
+    asked = ~filter::TermSet{0};
+  }
   run.parameters = parameters_of(chosen);
   run.passes = parse_passes(options.passes);
   run.max_memory = options.max_memory;
   run.with_noise = !options.common.json.empty();
   if (options.follow) wait_for_first_pass(options.input);
   study::Dump dump(options.input);
+  fit_terms(dump, {&run.parameters, 1}, asked, options.common.quiet);
   const std::uint64_t last = run.passes.last.value_or(dump.pass_bounds().size() - 1);
   run.snapshots =
       snapshots_of(options.snapshots, last > run.passes.first ? last - run.passes.first : 0);
@@ -208,7 +212,7 @@ void add_filter(CLI::App& app) {
   CLI::App* command = app.add_subcommand("filter", "filter a dump and write the picture");
   add_filter_options(*command, *options);
   set_example(*command, "psf filter scene.pvb -o filtered.exr -o filtered.png --r0 16px");
-  command->callback([options] { run(*options); });
+  command->callback([options, command] { run(*options, asked_terms(*command)); });
 }
 
 }  // namespace psf::tools

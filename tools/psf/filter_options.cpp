@@ -1,10 +1,14 @@
 // Declares the options of psf filter and turns their text into parameters.
 #include "filter_options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <string>
 
 #include "filter/parameters_text.h"
 #include "pass_range.h"
+#include "study/missing_terms.h"
 
 namespace psf::tools {
 namespace {
@@ -48,6 +52,21 @@ void add_weights(CLI::App& command, ParameterOptions& options) {
 }
 
 }  // namespace
+
+filter::TermSet asked_terms(const CLI::App& command) {
+  filter::TermSet asked = 0;
+  for (std::size_t k = 0; k < filter::kTermCount; ++k) {
+    const std::string name = std::string("--") + filter::kTermNames[k];
+    if (command.get_option(name)->count() > 0) asked |= filter::TermSet{1} << k;
+  }
+  return asked;
+}
+
+void fit_terms(const study::Dump& dump, std::span<filter::Parameters> sets, filter::TermSet asked,
+               bool quiet) {
+  const std::string note = study::switch_off_missing(dump, sets, asked);
+  if (!note.empty() && !quiet) fmt::print(stderr, "note: {}\n", note);
+}
 
 filter::Parameters parameters_of(const ParameterOptions& options) {
   filter::Parameters parameters;

@@ -4,12 +4,15 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "cli.h"
 #include "filter/parameters.h"
 #include "filter/radius.h"
+#include "filter/weights.h"
+#include "study/dump.h"
 
 namespace psf::tools {
 
@@ -34,6 +37,12 @@ struct FilterOptions : ParameterOptions {
   bool refusals = false, follow = false;
   std::optional<std::uint64_t> max_memory;  // bytes
 };
+
+// The terms that the command line gives; those that it leaves at their default are not among them.
+[[nodiscard]] filter::TermSet asked_terms(const CLI::App& command);
+// Switches off, in all sets, what the dump cannot serve and nobody asked for, with a note.
+void fit_terms(const study::Dump& dump, std::span<filter::Parameters> sets, filter::TermSet asked,
+               bool quiet);
 
 // Each declares its options, which write into `options`.
 void add_parameter_options(CLI::App& command, ParameterOptions& options);

@@ -6,7 +6,6 @@
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -20,6 +19,7 @@
 #include "formats/metadata.h"
 #include "formats/reader.h"
 #include "formats/statistics.h"
+#include "info_tables.h"
 #include "noise_report.h"
 #include "verbs.h"
 
@@ -59,14 +59,6 @@ double ratio(const formats::ChannelSize& size) {
   return size.raw == 0 ? 1 : static_cast<double>(size.stored) / static_cast<double>(size.raw);
 }
 
-// Text of a file may hold what a terminal obeys.
-std::string shown(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(),
-      [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7F'; }, '?');
-  return text.empty() ? "-" : text;
-}
-
 std::string type_text(const formats::Channel& channel) {
   std::string text(name_of(channel.type));
   if (channel.components > 1) text += fmt::format(" x {}", channel.components);
@@ -99,15 +91,16 @@ void print_overview(const formats::Reader& reader, const formats::Metadata& meta
   const formats::Head& head = reader.head();
   fmt::print("{}: path-vertex buffer {}.{}, {}\n", reader.path(), head.major, head.minor,
              reader.closed() ? "closed" : "not closed (being written, or its writer was stopped)");
-  line("producer", shown(metadata.producer));
-  line("scene", shown(metadata.scene) +
-                    (metadata.scene_hash.empty() ? "" : ", hash " + shown(metadata.scene_hash)));
-  line("paths",
-       fmt::format("{}, {} sampler by {}, seed {}, block base {}, split {}",
-                   shown(metadata.integrator), shown(metadata.sampler), shown(metadata.enumeration),
-                   metadata.seed, metadata.block_base, metadata.split));
-  line("vertex", shown(metadata.vertex_rule));
-  line("units", shown(metadata.units));
+  line("producer", shown_or_dash(metadata.producer));
+  line("scene",
+       shown_or_dash(metadata.scene) +
+           (metadata.scene_hash.empty() ? "" : ", hash " + shown_or_dash(metadata.scene_hash)));
+  line("paths", fmt::format("{}, {} sampler by {}, seed {}, block base {}, split {}",
+                            shown_or_dash(metadata.integrator), shown_or_dash(metadata.sampler),
+                            shown_or_dash(metadata.enumeration), metadata.seed, metadata.block_base,
+                            metadata.split));
+  line("vertex", shown_or_dash(metadata.vertex_rule));
+  line("units", shown_or_dash(metadata.units));
   line("uuid", reader.uuid());
   line("records",
        fmt::format("{} in {}, {} chunk{}", grouped(reader.records()), passes_text(reader),
@@ -116,24 +109,6 @@ void print_overview(const formats::Reader& reader, const formats::Metadata& meta
                                                  ? ""
                                                  : fmt::format(", of which {} are not committed",
                                                                bytes(reader.uncommitted_bytes()))));
-}
-
-void print_cameras(const formats::Metadata& metadata) {
-  if (metadata.cameras.empty()) return;
-  fmt::print("\n  {:<14}{:>13}  {}\n", "camera", "pixels", "angle per pixel");
-  for (const formats::CameraInfo& camera : metadata.cameras) {
-    fmt::print("  {:<14}{:>13}  {:.4f} degrees\n", shown(camera.name),
-               fmt::format("{} x {}", camera.width, camera.height),
-               camera.angle_per_pixel * 180 / std::numbers::pi);
-  }
-}
-
-void print_lights(const formats::Metadata& metadata) {
-  if (metadata.lights.empty()) return;
-  fmt::print("\n  {:<14}{}\n", "light", "visibility bit");
-  for (std::size_t k = 0; k < metadata.lights.size(); ++k) {
-    fmt::print("  {:<14}{}\n", shown(metadata.lights[k]), k % 32);
-  }
 }
 
 // Of the column that holds the channels' names.
@@ -213,10 +188,10 @@ Noise read_noise(const std::string& path) {
 
 void print_noise(const formats::Metadata& metadata, const Noise& noise) {
   fmt::print("\n");
-  if (noise.of.empty()) return line("noise", "not known: " + shown(noise.unknown));
+  if (noise.of.empty()) return line("noise", "not known: " + shown_or_dash(noise.unknown));
   fmt::print("  {:<14}{}\n", "camera", "u's share of the noise, which no filter of c reaches");
   for (std::size_t k = 0; k < noise.of.size(); ++k) {
-    fmt::print("  {:<14}{}\n", shown(metadata.cameras[k].name), share_text(noise.of[k]));
+    fmt::print("  {:<14}{}\n", shown_or_dash(metadata.cameras[k].name), share_text(noise.of[k]));
   }
 }
 
@@ -282,8 +257,7 @@ void run(const InfoOptions& options) {
   if (options.statistics) statistics = read_statistics(reader, options.common.quiet);
 
   print_overview(reader, metadata);
-  print_cameras(metadata);
-  print_lights(metadata);
+  print_tables(metadata);
   print_channels(reader, sizes);
   Noise noise;
   if (options.statistics) {

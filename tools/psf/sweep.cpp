@@ -12,6 +12,7 @@
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "filter_options.h"
 #include "parameter_lists.h"
 #include "pass_range.h"
 #include "study/sweep_file.h"
@@ -81,11 +82,12 @@ void print_best(const study::Json& json, study::Metric metric) {
   fmt::print("{:>4}  {:>10.4g}  unfiltered\n", "", value_of(json["unfiltered"]));
 }
 
-void run(const SweepOptions& options) {
+void run(const SweepOptions& options, filter::TermSet terms) {
   keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
-  const std::vector<filter::Parameters> asked = all_sets(options.lists);
+  std::vector<filter::Parameters> asked = all_sets(options.lists);
   const study::Dump dump(options.input);
+  fit_terms(dump, asked, terms, options.common.quiet);
   const StudyFolder folder(options.study, dump);
   study::SweepFile file(
       folder.path(),
@@ -164,7 +166,7 @@ void add_sweep(CLI::App& app) {
   set_example(*command,
               "psf sweep scene.pvb --reference reference.exr --r0 2px:32px:x2 --delta 0.2,0.33,0.5 "
               "-o sweep");
-  command->callback([options] { run(*options); });
+  command->callback([options, command] { run(*options, asked_terms(*command)); });
 }
 
 }  // namespace psf::tools

@@ -15,6 +15,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "filter/parameters_text.h"
+#include "filter_options.h"
 #include "parameter_lists.h"
 #include "pass_range.h"
 #include "study/study_file.h"
@@ -117,13 +118,14 @@ study::Json to_json(const study::TuneRow& row) {
           {"alike", row.distance < study::kAlike}};
 }
 
-void run(const TuneOptions& options) {
+void run(const TuneOptions& options, filter::TermSet asked) {
   keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
   ParameterLists lists = options.lists;
   if (lists.r0.empty()) lists.r0 = kRadii;
-  const std::vector<filter::Parameters> sets = all_sets(lists);
+  std::vector<filter::Parameters> sets = all_sets(lists);
   const study::Dump dump(options.input);
+  fit_terms(dump, sets, asked, options.common.quiet);
   study::Tune tune;
   tune.sets = sets;
   tune.passes = parse_passes(options.passes);
@@ -182,7 +184,7 @@ void add_tune(CLI::App& app) {
   command->get_option("--r0")->description("radii (default nine from 2px to 32px)");
   add_common(*command, options->common);
   set_example(*command, "psf tune scene.pvb --delta 0.2,0.33,0.5 --json tuned.json");
-  command->callback([options] { run(*options); });
+  command->callback([options, command] { run(*options, asked_terms(*command)); });
 }
 
 }  // namespace psf::tools

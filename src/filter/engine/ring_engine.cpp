@@ -129,18 +129,21 @@ class RingEngine::Range {
     }
     const std::span<const std::uint32_t> neighbors(neighbors_.begin(), rings_);
     queries_.add(neighbors);
-    visit_({i, std::span(average_).first(rings_), neighbors});
+    visit_({i, std::span(average_).first(rings_), neighbors, {balls_.begin(), 4 * rings_}});
   }
 
   // `add_own`: i is not in the ball.
   void finish_one(std::uint32_t i, std::size_t k, bool add_own, std::optional<Rgb>& adopted) {
     const bool disk = !p_.area.empty();
     const float r_i = e_.radius(i, k);
-    const double* ball = &balls_[4 * k];
+    double* ball = &balls_[4 * k];
     Sum sum{ball[0], ball[1], ball[2]};
     std::uint32_t count = neighbors_[k];
     if (add_own) {
       sum.add(e_.values_[i], disk ? double{p_.area[i]} : 1);
+      ball[0] = sum.x;
+      ball[1] = sum.y;
+      ball[2] = sum.z;
       ++count;
     }
     neighbors_[k] = count;

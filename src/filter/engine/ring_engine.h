@@ -23,6 +23,8 @@ class RingEngine {
     std::uint32_t query;  // record number
     std::span<const Rgb> average;
     std::span<const std::uint32_t> neighbors;  // sources averaged; 0 for an orphan
+    // (scales, 4): red, green and blue that `average` is made of, in double; then of no use.
+    std::span<const double> sums;
   };
 
   // Where it is not, nothing else may be asked.

@@ -1,5 +1,6 @@
 #include "filter/estimators/adaptive.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -8,6 +9,7 @@
 #include "core/parallel.h"
 #include "filter/engine/ring_engine.h"
 #include "filter/estimators/agreement.h"
+#include "search/search.h"
 
 namespace psf::filter {
 namespace {
@@ -20,77 +22,114 @@ std::array<double, kAdaptiveRadii> shares_of_radius() {
   return shares;
 }
 
-Moments moments_of(const Rgb& average, std::uint32_t count) {
-  return {count, double{average.x}, double{average.y}};
-}
-
-// What the engines average: luminance and its square.
+// What the engine adds up: luminance, and its square as two floats, whose sum is all but exact.
 std::vector<Rgb> luminances(const Problem& problem, std::span<const Rgb> values) {
   std::vector<Rgb> result(values.size(), Rgb(0, 0, 0));
   for (const std::uint32_t j : problem.roles.sources) {
     const float y = luminance(values[j]);
-    result[j] = Rgb(y, y * y, 0);
+    const double square = double{y} * double{y};
+    const auto upper = static_cast<float>(square);
+    result[j] = Rgb(y, upper, static_cast<float>(square - double{upper}));
   }
   return result;
 }
 
-// All radii from one traversal; false where the fast engine does not take the values.
+// Whether floats hold the squares.
+bool is_moderate(const Problem& problem, std::span<const Rgb> values) {
+  constexpr float kMost = 1e18f;
+  return std::all_of(problem.roles.sources.begin(), problem.roles.sources.end(),
+                     [&](std::uint32_t j) { return std::abs(luminance(values[j])) <= kMost; });
+}
+
+// All radii from one traversal; false where the fast engine does not take the records.
 bool in_one_traversal(const Problem& problem, std::span<const Rgb> values, double agree,
                       std::span<float> out) {
   const std::array<double, kAdaptiveRadii> shares = shares_of_radius();
   const std::vector<double> basis(problem.radius.begin(), problem.radius.end());
+  const std::vector<Rgb> averaged = luminances(problem, values);
   engine::RingEngine rings(problem, shares, basis);
   if (!rings.is_moderate()) return false;
-  rings.set_values(values);
+  rings.set_values(averaged);
   constexpr std::size_t kGrain = engine::RingEngine::kGrain;
   core::parallel_for(rings.queries().size(), kGrain, [&](std::size_t begin, std::size_t end) {
     core::throw_if_interrupted("no picture was written");
     std::array<Statistics, kAdaptiveRadii> unused;
     rings.average(begin, end, unused, [&](const engine::RingEngine::Results& results) {
       std::array<Moments, kAdaptiveRadii> balls;
-      for (std::size_t k = 0; k < balls.size(); ++k)
-        balls[k] = moments_of(results.average[k], results.neighbors[k]);
+      for (std::size_t k = 0; k < balls.size(); ++k) {
+        const double* sums = &results.sums[4 * k];
+        balls[k] = {results.neighbors[k], sums[0], sums[1] + sums[2]};
+      }
       out[results.query] = rings.radius(results.query, last_that_agrees(balls, agree));
     });
   });
   return true;
 }
 
-// The same by any engine, a radius after the other.
-void one_by_one(search::Kind kind, const Problem& problem, std::span<const Rgb> values,
-                double agree, std::span<float> out) {
-  const std::array<double, kAdaptiveRadii> shares = shares_of_radius();
-  std::vector<float> radius(problem.radius.size());
-  const Problem varied{problem.records, problem.roles, radius, problem.weights, {}};
-  const std::unique_ptr<Engine> engine = make_engine(kind, varied);
-  std::vector<Moments> balls(radius.size());
-  std::vector<Rgb> averages(radius.size());
-  std::vector<std::uint32_t> counts(radius.size());
-  std::vector<bool> stopped(radius.size());
-  for (std::size_t k = 0; k < kAdaptiveRadii; ++k) {
-    for (std::size_t i = 0; i < radius.size(); ++i)
-      radius[i] = static_cast<float>(shares[k] * double{problem.radius[i]});
-    Statistics unused;
-    engine->average(values, false, averages, counts, unused);
-    for (const std::uint32_t i : problem.roles.queries) {
-      const Moments larger = moments_of(averages[i], counts[i]);
-      stopped[i] = stopped[i] || (k > 0 && !agrees(balls[i], larger, agree));
-      if (stopped[i]) continue;
-      balls[i] = larger;
-      out[i] = radius[i];
-    }
+// The same as anyone would write it first: a search for the largest ball of each query.
+class Plain {
+ public:
+  Plain(search::Kind kind, const Problem& problem, std::span<const Rgb> values, double agree)
+      : p_(problem), values_(values), agree_(agree), shares_(shares_of_radius()) {
+    std::vector<Vec3> positions;
+    for (const std::uint32_t j : p_.roles.sources) positions.push_back(p_.records.position[j]);
+    search_ =
+        search::make_search(kind == search::Kind::flann ? search::Kind::plain : kind, positions);
   }
-}
+
+  void set_radii(std::span<float> out) const {
+    const std::vector<std::uint32_t>& queries = p_.roles.queries;
+    core::parallel_for(queries.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      core::throw_if_interrupted("no picture was written");
+      std::vector<search::Neighbor> found;
+      for (std::size_t q = begin; q < end; ++q) out[queries[q]] = radius(queries[q], found);
+    });
+  }
+
+ private:
+  static constexpr std::size_t kGrain = 256;  // queries
+
+  [[nodiscard]] float radius(std::uint32_t i, std::vector<search::Neighbor>& found) const {
+    std::array<float, kAdaptiveRadii> radii;
+    std::array<Moments, kAdaptiveRadii> balls;
+    for (std::size_t k = 0; k < radii.size(); ++k) {
+      radii[k] = static_cast<float>(shares_[k] * double{p_.radius[i]});
+      if (p_.roles.of[i] == Role::source) add(i, balls[k]);
+    }
+    search_->within(p_.records.position[i], radii.back() * radii.back(), found);
+    for (const search::Neighbor& neighbor : found) {
+      const std::uint32_t j = p_.roles.sources[neighbor.index];
+      if (j == i) continue;
+      for (std::size_t k = 0; k < radii.size(); ++k) {
+        if (!search::chi_ball(neighbor.d_sq, radii[k] * radii[k])) continue;
+        if (p_.weights.pass(i, j, radii[k])) add(j, balls[k]);
+      }
+    }
+    return radii[last_that_agrees(balls, agree_)];
+  }
+  void add(std::uint32_t j, Moments& ball) const {
+    const double y = double{luminance(values_[j])};
+    ++ball.count;
+    ball.sum += y;
+    ball.sum_sq += y * y;
+  }
+
+  const Problem& p_;
+  std::span<const Rgb> values_;
+  double agree_;
+  std::array<double, kAdaptiveRadii> shares_;
+  std::unique_ptr<search::Search> search_;
+};
 
 }  // namespace
 
 std::vector<float> adaptive_radii(search::Kind kind, const Problem& problem,
                                   std::span<const Rgb> values, double agree) {
-  const std::vector<Rgb> averaged = luminances(problem, values);
   std::vector<float> radii(problem.records.size(), 0.0f);
-  const bool fast = kind == search::Kind::flann;
-  if (!fast || !in_one_traversal(problem, averaged, agree, radii))
-    one_by_one(kind, problem, averaged, agree, radii);
+  const bool fast = kind == search::Kind::flann && is_moderate(problem, values);
+  if (!fast || !in_one_traversal(problem, values, agree, radii)) {
+    Plain(kind, problem, values, agree).set_radii(radii);
+  }
   return radii;
 }
 

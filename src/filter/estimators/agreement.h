@@ -6,10 +6,10 @@
 
 namespace psf::filter {
 
-// Of the luminance of what is in a ball.
+// Of the luminances in a ball, and of their squares: sums in double.
 struct Moments {
   std::uint32_t count = 0;
-  double mean = 0, mean_sq = 0;
+  double sum = 0, sum_sq = 0;
 };
 
 // Below so many contributions on either side there is no test, and the ball grows. Measured: with 8
@@ -17,8 +17,9 @@ struct Moments {
 inline constexpr std::uint32_t kFewestTested = 64;
 
 // Whether the mean of what `larger` has beyond `ball`, a part of it, is within `agree` standard
-// errors of the mean of `ball` (Welch 1947: each side has a variance of its own). One firefly, as
-// bright as can be, has a standard error of its own size, so it makes no ball stop.
+// errors of the mean of `ball` (Welch 1947: each side has a variance of its own, of n values over
+// n - 1). One firefly, as bright as can be, has a standard error of its own size, so it makes no
+// ball stop. What is not a number agrees.
 [[nodiscard]] bool agrees(const Moments& ball, const Moments& larger, double agree);
 
 // The last of `balls`, each a part of the next, up to which each agrees with the one before.

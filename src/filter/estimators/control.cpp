@@ -93,11 +93,14 @@ class Control {
     for (const CameraView& camera : block_.cameras) {
       pixels += std::uint64_t{camera.width} * camera.height;
     }
-    for (const std::uint32_t i : roles_.sources) {
-      if (is_chosen(pixel_of(r_, i), (block_.first_path + i) / pixels, p_.sources)) {
+    for (std::uint32_t i = 0; i < roles_.of.size(); ++i) {
+      Role& role = roles_.of[i];
+      if (!is_input(role)) continue;
+      const std::uint64_t pass = (block_.first_path + i) / pixels;
+      if (!is_chosen(pixel_of(r_, i), pass, p_.sources)) {
+        role = role == Role::source ? Role::query : Role::unchosen;
+      } else if (role == Role::source) {
         chosen.push_back(i);
-      } else {
-        roles_.of[i] = Role::query;
       }
     }
     roles_.sources = std::move(chosen);

@@ -40,7 +40,8 @@ enum class PathFate : std::uint8_t {
 struct ExplainedPath {
   std::uint32_t vertex = 0;  // its own place in Explanation::vertices
   PathFate fate = PathFate::averaged;
-  float radius = 0;  // r_i, world units; of `adaptive`, that which it chose
+  bool is_input = false;  // the picture without filter is the mean of such paths
+  float radius = 0;       // r_i, world units; of `adaptive`, that which it chose
   Rgb c_bar{0, 0, 0};
   std::uint32_t neighbors = 0;     // sources averaged; 0 for an orphan
   double scale = 1;                // of the sum over its sources: 1 / how many, or 1 / (pi r_i^2)

@@ -44,6 +44,7 @@ ExplainedPath BlockExplainer::explain(std::uint32_t i, std::vector<ExplainedPair
   ExplainedPath path;
   path.vertex = i;
   path.fate = fate_of(i);
+  path.is_input = filter::is_input(roles_.of[i]);
   if (path.fate == PathFate::no_vertex || path.fate == PathFate::left_out) return path;
   path.radius = radius_in_world_[i];
   path.c_bar = average_.c_bar[i];
@@ -71,7 +72,7 @@ bool BlockExplainer::is_disk(std::uint32_t i) const {
 PathFate BlockExplainer::fate_of(std::uint32_t i) const {
   const filter::Role role = roles_.of[i];
   if (role == filter::Role::left_out) return PathFate::left_out;
-  if (role == filter::Role::no_vertex) return PathFate::no_vertex;
+  if (!filter::is_query(role)) return PathFate::no_vertex;
   const Rgb u = records_.unfiltered.empty() ? Rgb(0, 0, 0) : records_.unfiltered[i];
   const Vec3 filtered = u + records_.throughput[i] * average_.c_bar[i];
   const Vec3 input = u + records_.throughput[i] * records_.contribution[i];

@@ -51,7 +51,7 @@ class Tracer {
       Colour radiance = pixel_if_.unfiltered(i), part(0, 0, 0);
       pixel.filtered += radiance;
       if (!bare) pixel.filtered += wide(e_.vertices.throughput[i]) * wide(path.c_bar);
-      if (!bare && !e_.is_source[i]) continue;
+      if (!path.is_input) continue;
       if (!bare) {
         const Colour alpha_i = wide(e_.vertices.throughput[i]);
         part = alpha_i * wide(e_.vertices.contribution[i]);
