@@ -21,6 +21,7 @@ filter::Parameters parameters_for(const study::Dump& dump) {
   if (!has("normal")) parameters.weights.normal.reset();
   if (!has("reflectance")) parameters.weights.reflectance.reset();
   if (!has("visibility")) parameters.weights.visibility = false;
+  if (!has("normal") || !has("direction") || !has("roughness")) parameters.weights.gloss.reset();
   return parameters;
 }
 
@@ -52,7 +53,7 @@ filter::Records part(const filter::Records& records, std::size_t first, std::siz
           cut(records.throughput),  cut(records.contribution), cut(records.unfiltered),
           cut(records.pixel),       cut(records.camera),       cut(records.normal),
           cut(records.reflectance), cut(records.visibility),   cut(records.hit_distance),
-          cut(records.direction),   cut(records.material)};
+          cut(records.direction),   cut(records.material),     cut(records.roughness)};
 }
 
 }  // namespace psf::bench
