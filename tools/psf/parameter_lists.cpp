@@ -119,7 +119,7 @@ void add_parameter_lists(CLI::App& command, ParameterLists& lists) {
   add("--hit-distance", lists.hit_distance, "LIST", "thresholds and off (default off)");
   add("--plane", lists.plane, "LIST", "thresholds and off (default off)");
   add("--direction", lists.direction, "LIST", "thresholds and off (default off)");
-  add("--gloss", lists.gloss, "LIST", "thresholds and off (default 1)");
+  add("--gloss", lists.gloss, "LIST", "thresholds and off (default 0.8)");
   add("--material", lists.material, "LIST", "of on, off (default off)");
   add("--demodulate", lists.demodulate, "LIST", "of on, off (default off)");
   add("--iterations", lists.iterations, "LIST", "1,2 (default 1)");
