@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "filter/inputs.h"
 
 namespace psf::bench {
 namespace {
@@ -33,6 +34,8 @@ Sample read_sample(const study::Dump& dump, std::size_t records) {
   sample.parameters = parameters_for(dump);
   const std::uint64_t count = std::min(std::uint64_t{records}, dump.reader().records());
   dump.read({0, count}, dump.select(sample.parameters, false), sample.records);
+  sample.parameters.weights =
+      filter::terms_in_use(sample.records.view(), sample.parameters.weights);
   for (const std::uint64_t bound : dump.pass_bounds()) {
     if (bound <= count) sample.passes.push_back(bound);
   }
