@@ -66,7 +66,7 @@ Average average_scaled(const Records& records, std::span<const float> radius, co
   }
   const bool disk = parameters.estimator == Estimator::disk;
   const std::vector<float> area = disk ? areas(records, roles, block) : std::vector<float>();
-  const Weights weights(records, parameters.weights);
+  const Weights weights(records, terms_in_use(records, parameters.weights));
   std::vector<Rgb> previous;
   if (parameters.demodulate) previous = demodulated(records, roles);
   const std::span<const Rgb> values = parameters.demodulate ? previous : records.contribution;

@@ -1,9 +1,11 @@
 #include "filter/inputs.h"
 
+#include <cmath>
 #include <string>
 #include <string_view>
 
 #include "core/error.h"
+#include "filter/weights.h"
 
 namespace psf::filter {
 
@@ -15,13 +17,26 @@ void require_channels(const Records& records, const Parameters& parameters) {
     if (channel == "visibility") return !records.visibility.empty();
     if (channel == "hit_distance") return !records.hit_distance.empty();
     if (channel == "direction") return !records.direction.empty();
-    return !records.material.empty();
+    if (channel == "material") return !records.material.empty();
+    return !records.roughness.empty();
   };
   for (const ChannelNeed& need : optional_channels(parameters)) {
     if (has(need.channel)) continue;
     throw Error(ErrorCode::bad_input, "the records have no channel " + std::string(need.channel) +
                                           ", which " + std::string(need.wanted_by) + " needs");
   }
+}
+
+WeightTerms terms_in_use(const Records& records, const WeightTerms& terms) {
+  WeightTerms in_use = terms;
+  if (!terms.gloss) return in_use;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if ((records.flags[i] & kHasVertex) != 0 && !std::isinf(lobe_width(records.roughness[i]))) {
+      return in_use;
+    }
+  }
+  in_use.gloss.reset();
+  return in_use;
 }
 
 std::vector<float> areas(const Records& records, const Roles& roles, const Block& block) {

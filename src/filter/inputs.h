@@ -15,6 +15,9 @@ namespace psf::filter {
 // Throws Error{bad_input} naming the channel that `parameters` use and `records` do not have.
 void require_channels(const Records& records, const Parameters& parameters);
 
+// The terms without `gloss` where no vertex has a glossy lobe: then it passes every pair.
+[[nodiscard]] WeightTerms terms_in_use(const Records& records, const WeightTerms& terms);
+
 // By record number: c / rho of the sources, 0 elsewhere.
 [[nodiscard]] std::vector<Rgb> demodulated(const Records& records, const Roles& roles);
 
@@ -28,8 +31,7 @@ void require_channels(const Records& records, const Parameters& parameters);
 [[nodiscard]] inline Rgb finished(const Rgb& averaged, std::uint32_t neighbors, bool is_source,
                                   float r_i, const Records& records, std::uint32_t i,
                                   const Parameters& parameters) {
-  if (neighbors == 1 && is_source &&
-      (parameters.estimator != Estimator::disk || r_i * r_i == 0)) {
+  if (neighbors == 1 && is_source && (parameters.estimator != Estimator::disk || r_i * r_i == 0)) {
     return records.contribution[i];
   }
   return parameters.demodulate ? remodulate(averaged, records.reflectance[i]) : averaged;

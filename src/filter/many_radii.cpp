@@ -85,7 +85,7 @@ class Many {
     if (roles.sources.empty()) return false;
     std::vector<float> area;
     if (parameters_.estimator == Estimator::disk) area = areas(records, roles, block_);
-    const Weights weights(records, parameters_.weights);
+    const Weights weights(records, terms_in_use(records, parameters_.weights));
     const Problem problem{records, roles, scaled.radius(), weights, area};
     engine::RingEngine engine(problem, scales.values, basis);
     if (!engine.is_moderate()) return false;

@@ -20,12 +20,13 @@ namespace psf::filter {
   const WeightTerms& terms = parameters.weights;
   const bool disk = parameters.estimator == Estimator::disk;
   std::uint64_t columns = kVector;  // positions, and what the terms compare
-  if (terms.normal || terms.plane) columns += kVector;
+  if (terms.normal || terms.plane || terms.gloss) columns += kVector;
   if (terms.reflectance) columns += kVector;
   if (terms.visibility) columns += kWord;
   if (terms.hit_distance) columns += kWord;
-  if (terms.direction) columns += kVector;
+  if (terms.direction || terms.gloss) columns += kVector;
   if (terms.material) columns += kWord;
+  if (terms.gloss) columns += kWord;
   const std::uint64_t groups = (2 * columns + kSum + kGroup - 1) / kGroup;
   constexpr std::uint64_t kParents = 2;  // for 256: a node, a point of the index, statistics
 
@@ -34,7 +35,7 @@ namespace psf::filter {
   if (disk) bytes += kWord;                                                  // areas
   // A key, its hash, two entries to sort, places in cells, twice where there are orphans; no tree.
   if (parameters.estimator == Estimator::hash)
-    bytes = kResult + kLists + kRadius + 64 + 64 + kVector;
+    bytes = kResult + kLists + kRadius + 96 + 64 + kVector;
   // Values, means and moments, the roles of a half; its tree is smaller.
   if (parameters.estimator == Estimator::control) bytes += 3 * kVector + 3 * kWord + 1;
   // Radii, those in double, luminances; the rings' tree is gone before that of the averages is

@@ -26,6 +26,7 @@ WeightTerms WeightTerms::none() {
   terms.normal.reset();
   terms.reflectance.reset();
   terms.visibility = false;
+  terms.gloss.reset();
   return terms;
 }
 
@@ -61,6 +62,7 @@ void Parameters::validate() const {
   require(at_least_zero(weights.hit_distance), "--hit-distance: the threshold must be >= 0");
   require(at_least_zero(weights.plane), "--plane: the threshold must be >= 0");
   require(is_cosine(weights.direction), "--direction: the threshold is a cosine in [-1, 1]");
+  require(!weights.gloss || *weights.gloss > 0, "--gloss: the threshold must be > 0");
   require(iterations >= 1, "--iterations: at least 1");
   require(sources >= 1, "--sources: 1/K with K >= 1");
   require(agree > 0, "--agree: a number of standard errors above 0");
@@ -105,6 +107,9 @@ std::vector<ChannelNeed> optional_channels(const Parameters& parameters) {
   need(weights.direction.has_value(), "direction", "--direction", "give --direction off");
   need(disk, "direction", "--estimator disk", average);
   need(weights.material, "material", "--material", "leave --material out");
+  need(weights.gloss.has_value(), "normal", "--gloss", "give --gloss off");
+  need(weights.gloss.has_value(), "direction", "--gloss", "give --gloss off");
+  need(weights.gloss.has_value(), "roughness", "--gloss", "give --gloss off");
   return needs;
 }
 

@@ -53,6 +53,7 @@ struct WeightTerms {
   std::optional<float> plane;                // abs((x_j - x_i) . n_i) <= t r_i, t >= 0
   std::optional<float> direction;            // omega_i . omega_j >= t, t in [-1, 1]
   bool material = false;                     // equal
+  std::optional<float> gloss = 0.8f;         // of normals and directions: gloss_term(), t > 0
 
   [[nodiscard]] static WeightTerms none();
   // By the term's number in kTermNames (weights.h).

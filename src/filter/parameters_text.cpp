@@ -154,6 +154,7 @@ std::vector<std::pair<std::string, std::string>> describe(const Parameters& p) {
           {"plane", to_text(p.weights.plane)},
           {"direction", to_text(p.weights.direction)},
           {"material", to_text(p.weights.material)},
+          {"gloss", to_text(p.weights.gloss)},
           {"demodulate", to_text(p.demodulate)},
           {"iterations", fmt::format("{}", p.iterations)},
           {"sources", fmt::format("1/{}", p.sources)},

@@ -29,6 +29,7 @@ struct Records {
   std::span<const float> hit_distance;        // of the first ray shot from x_i; infinity: a miss
   std::span<const Vec3> direction;            // omega_i, unit, toward the camera
   std::span<const std::uint32_t> material;
+  std::span<const float> roughness;  // perceptual, of the smoothest lobe; 1: diffuse
 
   [[nodiscard]] std::size_t size() const { return flags.size(); }
 };

@@ -20,7 +20,8 @@ enum Checked : std::uint32_t {
   kNormal,
   kReflectance,
   kHitDistance,
-  kDirection
+  kDirection,
+  kRoughness
 };
 
 constexpr std::size_t kGrain = 4096;
@@ -63,10 +64,11 @@ class Classifier {
     const WeightTerms& weights = parameters.weights;
     const bool disk = parameters.estimator == Estimator::disk;
     distance_ = disk || parameters.radius.basis != RadiusBasis::world;
-    normal_ = disk || weights.normal || weights.plane;
+    normal_ = disk || weights.normal || weights.plane || weights.gloss;
     reflectance_ = demodulate_ || weights.reflectance;
     hit_distance_ = weights.hit_distance.has_value();
-    direction_ = disk || weights.direction;
+    direction_ = disk || weights.direction || weights.gloss;
+    roughness_ = weights.gloss.has_value();
     for (const CameraView& camera : block.cameras) {
       pixels_ += std::uint64_t{camera.width} * camera.height;
     }
@@ -136,6 +138,7 @@ class Classifier {
     check(!hit_distance_ || r_.hit_distance[i] >= std::numeric_limits<float>::lowest(),
           kHitDistance);  // +infinity is a miss
     check(!direction_ || all_finite(r_.direction[i]), kDirection);
+    check(!roughness_ || std::isfinite(r_.roughness[i]), kRoughness);
     if (demodulate_ && source && bad == 0) {
       check(all_finite(demodulate(r_.contribution[i], r_.reflectance[i])), kReflectance);
     }
@@ -147,7 +150,7 @@ class Classifier {
   std::uint32_t k_;
   double shaded_share_;  // of the records without vertex that count, for all that is known
   bool demodulate_;
-  bool distance_, normal_, reflectance_, hit_distance_, direction_;
+  bool distance_, normal_, reflectance_, hit_distance_, direction_, roughness_;
   std::uint64_t pixels_ = 0;
 };
 

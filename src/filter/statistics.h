@@ -12,10 +12,10 @@
 namespace psf::filter {
 
 // Channels whose non-finite values take a record out of the averages.
-inline constexpr std::size_t kCheckedChannels = 9;
+inline constexpr std::size_t kCheckedChannels = 10;
 inline constexpr std::array<const char*, kCheckedChannels> kCheckedNames = {
-    "unfiltered", "throughput",  "position",     "distance", "contribution",
-    "normal",     "reflectance", "hit_distance", "direction"};
+    "unfiltered", "throughput",  "position",     "distance",  "contribution",
+    "normal",     "reflectance", "hit_distance", "direction", "roughness"};
 
 struct Statistics {
   std::uint64_t records = 0;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 #include "filter/parameters.h"
@@ -12,10 +13,11 @@
 
 namespace psf::filter {
 
-inline constexpr std::size_t kTermCount = 7;
+inline constexpr std::size_t kTermCount = 8;
 // In the order of WeightTerms; the names are those of the options.
 inline constexpr std::array<const char*, kTermCount> kTermNames = {
-    "normal", "reflectance", "visibility", "hit-distance", "plane", "direction", "material"};
+    "normal", "reflectance", "visibility", "hit-distance",
+    "plane",  "direction",   "material",   "gloss"};
 
 // A bit for each term of kTermNames.
 using TermSet = std::uint32_t;
@@ -53,6 +55,22 @@ using TermSet = std::uint32_t;
   return m_i == m_j;
 }
 
+// alpha of GGX: how far from n the microfacets of a glossy lobe turn, about, in radians. Infinite
+// where there is no such lobe: then no direction matters.
+[[nodiscard]] inline float lobe_width(float roughness) {
+  return roughness < 1 ? roughness * roughness : std::numeric_limits<float>::infinity();
+}
+// Of the squares. Directions weigh more than they turn the lobe: they turn because x moves, and
+// then what is near moves in its mirror much more than that.
+inline constexpr float kDirectionWeight = 100;
+// t > 0.
+[[nodiscard]] inline bool gloss_term(const Vec3& n_i, const Vec3& n_j, const Vec3& omega_i,
+                                     const Vec3& omega_j, float width_i, float t) {
+  const float reach = t * width_i;
+  return search::distance_sq(n_i, n_j) + kDirectionWeight * search::distance_sq(omega_i, omega_j) <=
+         reach * reach;
+}
+
 // The product of the terms that are on. w_ii = 1 whatever the terms say: the caller does not ask
 // for it.
 class Weights {
@@ -67,14 +85,14 @@ class Weights {
   [[nodiscard]] bool pass(std::uint32_t i, std::uint32_t j, float r_i) const {
     return !refuses_normal(i, j) && !refuses_reflectance(i, j) && !refuses_visibility(i, j) &&
            !refuses_hit_distance(i, j) && !refuses_plane(i, j, r_i) && !refuses_direction(i, j) &&
-           !refuses_material(i, j);
+           !refuses_material(i, j) && !refuses_gloss(i, j);
   }
   // Bit k set: term k refuses, whatever the others say. 0 exactly where pass().
   [[nodiscard]] std::uint32_t refusers(std::uint32_t i, std::uint32_t j, float r_i) const {
     const bool by[kTermCount] = {refuses_normal(i, j),     refuses_reflectance(i, j),
                                  refuses_visibility(i, j), refuses_hit_distance(i, j),
                                  refuses_plane(i, j, r_i), refuses_direction(i, j),
-                                 refuses_material(i, j)};
+                                 refuses_material(i, j),   refuses_gloss(i, j)};
     std::uint32_t bits = 0;
     for (std::size_t k = 0; k < kTermCount; ++k) bits |= std::uint32_t{by[k]} << k;
     return bits;
@@ -103,6 +121,10 @@ class Weights {
   }
   [[nodiscard]] bool refuses_material(std::uint32_t i, std::uint32_t j) const {
     return on_.material && !material_term(r_.material[i], r_.material[j]);
+  }
+  [[nodiscard]] bool refuses_gloss(std::uint32_t i, std::uint32_t j) const {
+    return on_.gloss && !gloss_term(r_.normal[i], r_.normal[j], r_.direction[i], r_.direction[j],
+                                    lobe_width(r_.roughness[i]), *on_.gloss);
   }
 
   Records r_;

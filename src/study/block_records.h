@@ -22,10 +22,12 @@ struct BlockRecords {
   std::vector<float> hit_distance;
   std::vector<Vec3> direction;
   std::vector<std::uint32_t> material;
+  std::vector<float> roughness;
 
   [[nodiscard]] filter::Records view() const {
-    return {flags,  position, distance,    throughput, contribution, unfiltered, pixel,
-            camera, normal,   reflectance, visibility, hit_distance, direction,  material};
+    return {flags,      position,     distance,  throughput, contribution,
+            unfiltered, pixel,        camera,    normal,     reflectance,
+            visibility, hit_distance, direction, material,   roughness};
   }
 };
 

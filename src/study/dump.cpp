@@ -154,6 +154,7 @@ ChannelSet Dump::select(const filter::Parameters& parameters, bool guides) const
     set_needed(set.hit_distance, "hit_distance", Type::f32, 1);
     set_needed(set.direction, "direction", Type::f32, 3);
     set_needed(set.material, "material", Type::u32, 1);
+    set_needed(set.roughness, "roughness", Type::f32, 1);
   }
   if (guides) {
     set.normal = find("normal", Type::f32, 3);
@@ -194,6 +195,7 @@ void Dump::read(const filter::PathRange& range, const ChannelSet& channels,
   floats(channels.reflectance, out.reflectance);
   floats(channels.hit_distance, out.hit_distance);
   floats(channels.direction, out.direction);
+  floats(channels.roughness, out.roughness);
   integers(channels.flags, out.flags);
   integers(channels.pixel, out.pixel);
   integers(channels.camera, out.camera);

@@ -20,7 +20,7 @@ namespace psf::study {
 // `camera` it is camera 0.
 struct ChannelSet {
   std::optional<std::size_t> flags, position, distance, throughput, contribution, unfiltered, pixel,
-      camera, normal, reflectance, visibility, hit_distance, direction, material;
+      camera, normal, reflectance, visibility, hit_distance, direction, material, roughness;
 };
 
 class Dump {

@@ -35,8 +35,8 @@ std::uint64_t record_bytes(const ChannelSet& set) {
                               &set.normal, &set.reflectance, &set.direction}) {
     if (*channel) bytes += kVector;
   }
-  for (const auto* channel :
-       {&set.distance, &set.pixel, &set.visibility, &set.hit_distance, &set.material}) {
+  for (const auto* channel : {&set.distance, &set.pixel, &set.visibility, &set.hit_distance,
+                              &set.material, &set.roughness}) {
     if (*channel) bytes += kWord;
   }
   return bytes + (set.camera ? kHalf : 0);

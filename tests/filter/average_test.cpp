@@ -74,7 +74,7 @@ Case plain_case() {
 }
 
 TEST_CASE("Every subset of weight terms agrees with the oracle") {
-  for (unsigned bits = 0; bits < 128; ++bits) {
+  for (unsigned bits = 0; bits < 256; ++bits) {
     Case c = plain_case();
     c.parameters.weights = tests::terms_of(bits);
     c.share_unshaded = bits % 2 == 0 ? 0.5 : 0;
@@ -132,7 +132,7 @@ TEST_CASE("Orphans far from any source that passes agree with the oracle") {
   Case c = plain_case();
   c.count = 3000;
   c.parameters.radius = {0.01, filter::RadiusBasis::distance};
-  c.parameters.weights = tests::terms_of(127);
+  c.parameters.weights = tests::terms_of(255);
   c.share_unshaded = 0.6;
   check(c, 10);
 }

@@ -16,7 +16,7 @@ using filter::engine::kWidth;
 using filter::engine::PairCounts;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr unsigned kTermBits = 7;
+constexpr unsigned kTermBits = 8;
 
 class Random {
  public:
@@ -46,6 +46,7 @@ void copy_record(tests::RecordSet& set, std::size_t from, std::size_t to) {
   set.hit_distance[to] = set.hit_distance[from];
   set.direction[to] = set.direction[from];
   set.material[to] = set.material[from];
+  set.roughness[to] = set.roughness[from];
 }
 
 // Moves one value of a record.
@@ -58,6 +59,7 @@ void vary_record(tests::RecordSet& set, std::size_t i, std::uint32_t what, Rando
   if (what == 4) set.hit_distance[i] = random.one_in(4) ? kInfinity : random.value() + 0.5f;
   if (what == 5) set.direction[i][axis] = random.value();
   if (what == 6) set.material[i] = random.below(3) << 30;
+  if (what == 7) set.roughness[i] = random.one_in(4) ? 1 : random.value() + 0.5f;
 }
 
 // Groups of records that are equal, equal but for one value, or all different; the first group are
@@ -100,7 +102,7 @@ struct Scene {
           Rgb(static_cast<float>(number), static_cast<float>(number * 2654435761u >> 20), 1);
     }
     const auto pick = [&] { return std::size_t{random.below(set.size())}; };
-    const std::uint32_t by = random.one_in(3) ? 0 : random.below(128) & random.below(128);
+    const std::uint32_t by = random.one_in(3) ? 0 : random.below(256) & random.below(256);
     const std::size_t i = pick() % queries, j = pick();
     if ((by & 1) != 0) terms.normal = dot(set.normal[i], set.normal[j]);
     if ((by & 2) != 0) {
@@ -116,6 +118,7 @@ struct Scene {
     if ((by & 16) != 0) terms.plane = 1;
     if ((by & 32) != 0) terms.direction = dot(set.direction[i], set.direction[j]);
     terms.material = (by & 64) != 0;
+    if ((by & 128) != 0) terms.gloss = threshold_between(i, j);
     const bool common = random.one_in(2);
     for (std::size_t k = 0; k < kWidth; ++k) {
       const std::size_t query = common ? i : k, other = common ? j : pick();
@@ -128,6 +131,15 @@ struct Scene {
       if (random.one_in(50)) reach[k] = -1;  // nothing passes
     }
     if (by != 0 && random.one_in(2)) std::fill(r_sq, r_sq + queries, 1e3f);
+  }
+
+ private:
+  // At which `gloss` passes the pair, but for the last bits.
+  [[nodiscard]] float threshold_between(std::size_t i, std::size_t j) const {
+    const float turned = std::sqrt(search::distance_sq(set.normal[i], set.normal[j]) +
+                                   100 * search::distance_sq(set.direction[i], set.direction[j]));
+    const float t = turned / (set.roughness[i] * set.roughness[i]);
+    return t > 0 && std::isfinite(t) ? t : 1;
   }
 };
 

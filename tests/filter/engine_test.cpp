@@ -14,7 +14,7 @@ using tests::EngineCase;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr unsigned kDefaultTerms = 7, kAllTerms = 127;
+constexpr unsigned kDefaultTerms = 7 + 128, kAllTerms = 255;
 
 // Returns how many pairs passed.
 std::uint64_t check(const EngineCase& c, float tolerance = 0) {
@@ -52,7 +52,7 @@ TEST_CASE("The engines agree over several levels of the tree") {
 }
 
 TEST_CASE("The engines agree with every subset of terms") {
-  for (unsigned bits = 0; bits < 128; ++bits) {
+  for (unsigned bits = 0; bits < 256; ++bits) {
     EngineCase c(700, bits, bits % 2 == 0 ? 0.4 : 0);
     c.radius.assign(700, 0.4f);
     c.parameters.weights = tests::terms_of(bits);
@@ -185,7 +185,7 @@ TEST_CASE("The engines agree on a diagonal far from the origin") {
 
 TEST_CASE("A record is its own neighbour where its own normal refuses it") {
   for (const float length : {0.5f, 3.0f, 1e17f, 1e25f}) {
-    for (const unsigned terms : {1u, 32u, 33u, 16u, kAllTerms}) {
+    for (const unsigned terms : {1u, 32u, 33u, 16u, 128u, kAllTerms}) {
       EngineCase c(400, 6, 0.2);
       for (std::size_t i = 0; i < c.set.size(); ++i) {
         if (i % 3 == 0) c.set.normal[i] *= length;

@@ -83,9 +83,10 @@ TEST_CASE("Two records of one cell pass every term, whatever the terms") {
     set.reflectance[i] = Rgb(0.1f * unit(random), 0.5f, 0.1f * unit(random));
     set.visibility[i] = random() % 2;
     set.material[i] = random() % 2;
+    set.roughness[i] = i % 2 == 0 ? 1 : unit(random);
     set.hit_distance[i] = i % 5 == 0 ? std::numeric_limits<float>::infinity() : unit(random) * 9;
   }
-  for (unsigned bits = 0; bits < 128; bits += bits == 0 ? 1 : bits) {
+  for (unsigned bits = 0; bits < 256; bits += bits == 0 ? 1 : bits) {
     for (const float strict : {0.0f, 0.5f, 1.0f}) {
       if ((bits & 16) != 0) continue;  // plane: refused
       filter::WeightTerms terms = tests::terms_of(bits);
@@ -93,6 +94,7 @@ TEST_CASE("Two records of one cell pass every term, whatever the terms") {
       if (terms.direction) *terms.direction = strict == 1 ? 0.99f : strict;
       if (terms.reflectance) *terms.reflectance = 0.1f * strict;
       if (terms.hit_distance) *terms.hit_distance = 0.5f * strict;
+      if (terms.gloss) *terms.gloss = strict == 1 ? 0.5f : 4 + strict;
       // A radius that holds all, so that the terms alone decide.
       const std::vector<CellKey> keys = keys_of(set, terms, 1e6f);
       const Cells cells = filter::group_equal(keys);

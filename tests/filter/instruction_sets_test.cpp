@@ -38,11 +38,11 @@ EngineCase noisy_case(std::size_t count, unsigned terms, float r) {
 std::vector<EngineCase> cases() {
   std::vector<EngineCase> all;
   for (const std::size_t count : {1u, 2u, 15u, 17u, 63u, 65u, 255u, 257u, 4097u}) {
-    for (const unsigned terms : {0u, 7u, 127u}) {
+    for (const unsigned terms : {0u, 7u, 135u, 255u}) {
       for (const float r : {0.08f, 0.5f}) all.push_back(noisy_case(count, terms, r));
     }
   }
-  for (unsigned bits = 0; bits < 128; ++bits) all.push_back(noisy_case(600, bits, 0.4f));
+  for (unsigned bits = 0; bits < 256; ++bits) all.push_back(noisy_case(600, bits, 0.4f));
   EngineCase repeated = noisy_case(3000, 7, 0.2f);
   repeated.parameters.iterations = 3;
   repeated.parameters.demodulate = true;
@@ -93,7 +93,7 @@ TEST_CASE("Every instruction set gives the same bytes for many radii") {
         filter::average_many(c.set.view(), {0, 2, 1.5, c.cameras}, parameters, radii, keep));
     return keep.values;
   };
-  for (const unsigned terms : {0u, 7u, 16u, 127u}) {
+  for (const unsigned terms : {0u, 7u, 16u, 255u}) {
     const EngineCase c = noisy_case(3000, terms, 0.2f);
     const std::vector<Rgb> best = all(c);
     for (const std::string& set : instruction_sets()) {
@@ -107,7 +107,7 @@ TEST_CASE("Every instruction set gives the same bytes for many radii") {
 }
 
 TEST_CASE("Any number of threads gives the same bytes") {
-  for (const unsigned terms : {0u, 7u, 127u}) {
+  for (const unsigned terms : {0u, 7u, 135u, 255u}) {
     const EngineCase c = noisy_case(20'000, terms, 0.1f);
     const auto with_threads = [&](std::size_t threads) {
       const core::ThreadLimit limit(threads);

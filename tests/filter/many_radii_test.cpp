@@ -96,7 +96,7 @@ std::vector<Radius> grid(RadiusBasis basis, double least, double most, std::size
 }
 
 TEST_CASE("Many radii agree with separate runs, with every subset of terms") {
-  for (unsigned bits = 0; bits < 128; ++bits) {
+  for (unsigned bits = 0; bits < 256; ++bits) {
     EngineCase c(700, bits, bits % 2 == 0 ? 0.4 : 0);
     c.parameters.weights = tests::terms_of(bits);
     INFO("terms " << bits);

@@ -33,14 +33,15 @@ const std::vector<Damage>& damages() {
       {"normal", [](RecordSet& s, std::size_t i, float v) { s.normal[i].y = v; }},
       {"reflectance", [](RecordSet& s, std::size_t i, float v) { s.reflectance[i].z = v; }},
       {"hit_distance", [](RecordSet& s, std::size_t i, float v) { s.hit_distance[i] = v; }, false},
-      {"direction", [](RecordSet& s, std::size_t i, float v) { s.direction[i].x = v; }}};
+      {"direction", [](RecordSet& s, std::size_t i, float v) { s.direction[i].x = v; }},
+      {"roughness", [](RecordSet& s, std::size_t i, float v) { s.roughness[i] = v; }}};
   return all;
 }
 
 Parameters all_terms() {
   Parameters parameters;
   parameters.radius = {0.3, filter::RadiusBasis::distance};
-  parameters.weights = {0.5f, 0.2f, false, 0.9f, 0.9f, 0.1f, false};
+  parameters.weights = {0.5f, 0.2f, false, 0.9f, 0.9f, 0.1f, false, 1.0f};
   return parameters;
 }
 
@@ -95,6 +96,7 @@ TEST_CASE("What nothing uses may be anything") {
   set.reflectance[3].x = kNan;
   set.hit_distance[3] = kNan;
   set.direction[3].x = kNan;
+  set.roughness[3] = kNan;
   set.distance[3] = kNan;
   Parameters parameters;
   parameters.radius.basis = filter::RadiusBasis::world;

@@ -32,7 +32,7 @@ struct OracleResult {
   std::vector<std::size_t> neighbors;  // 0: orphan
   std::vector<double> radius;
   std::size_t orphans = 0, unmatched = 0, candidates = 0;
-  std::array<std::size_t, 7> refused{};
+  std::array<std::size_t, 8> refused{};
 };
 
 class Oracle {
@@ -110,7 +110,7 @@ class Oracle {
 
  private:
   // By term, in the order of the design's table.
-  [[nodiscard]] std::array<bool, 7> refusals(std::size_t i, std::size_t j) const {
+  [[nodiscard]] std::array<bool, 8> refusals(std::size_t i, std::size_t j) const {
     const filter::WeightTerms& w = p_.weights;
     const Triple d_rho = minus(triple(s_.reflectance[i]), triple(s_.reflectance[j]));
     const double h_i = double{s_.hit_distance[i]}, h_j = double{s_.hit_distance[j]};
@@ -126,7 +126,15 @@ class Oracle {
             w.plane && std::abs(off_plane) > double{*w.plane} * radius(i),
             w.direction &&
                 inner(triple(s_.direction[i]), triple(s_.direction[j])) < double{*w.direction},
-            w.material && s_.material[i] != s_.material[j]};
+            w.material && s_.material[i] != s_.material[j],
+            w.gloss && turns_out_of_lobe(i, j)};
+  }
+  [[nodiscard]] bool turns_out_of_lobe(std::size_t i, std::size_t j) const {
+    const double roughness = double{s_.roughness[i]};
+    const Triple n = minus(triple(s_.normal[i]), triple(s_.normal[j]));
+    const Triple omega = minus(triple(s_.direction[i]), triple(s_.direction[j]));
+    return roughness < 1 && std::sqrt(inner(n, n) + 100 * inner(omega, omega)) >
+                                double{*p_.weights.gloss} * roughness * roughness;
   }
   [[nodiscard]] bool passes(std::size_t i, std::size_t j) const {
     const auto by = refusals(i, j);
@@ -166,7 +174,7 @@ class Oracle {
   void count(std::size_t i, std::size_t j, OracleResult& r) const {
     ++r.candidates;
     const auto by = refusals(i, j);
-    for (std::size_t k = 0; k < 7 && j != i; ++k) r.refused[k] += by[k] ? 1u : 0u;
+    for (std::size_t k = 0; k < 8 && j != i; ++k) r.refused[k] += by[k] ? 1u : 0u;
   }
   // The 4 nearest that pass, ties by the lower record; the nearest of all where none does.
   [[nodiscard]] Triple adopt(std::size_t i, const std::vector<std::size_t>& sources,

@@ -80,6 +80,8 @@ TEST_CASE("Defaults are valid, what is out of range is refused") {
   refused([](Parameters& p) { p.weights.hit_distance = -1.0f; });
   refused([](Parameters& p) { p.weights.plane = -1.0f; });
   refused([](Parameters& p) { p.weights.direction = -2.0f; });
+  refused([](Parameters& p) { p.weights.gloss = 0.0f; });
+  refused([nan](Parameters& p) { p.weights.gloss = nan; });
   refused([](Parameters& p) { p.iterations = 0; });
   refused([](Parameters& p) { p.sources = 0; });
 }
@@ -93,7 +95,8 @@ TEST_CASE("Every parameter is described, under the name of its option") {
   CHECK(all ==
         "r0=8px delta=0.3333333333333333 radius-count=samples block=4passes normal=0.95 "
         "reflectance=0.05 "
-        "visibility=on hit-distance=off plane=off direction=off material=off demodulate=off "
+        "visibility=on hit-distance=off plane=off direction=off material=off gloss=0.8 "
+        "demodulate=off "
         "iterations=1 "
         "sources=1/4 estimator=average agree=off search=flann ");
 }

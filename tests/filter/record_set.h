@@ -1,6 +1,7 @@
 // Records that own their columns; random ones to filter, and terms that refuse some of their pairs.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -24,6 +25,7 @@ struct RecordSet {
   std::vector<float> hit_distance;
   std::vector<Vec3> direction;
   std::vector<std::uint32_t> material;
+  std::vector<float> roughness;
 
   explicit RecordSet(std::size_t count)
       : flags(count, filter::kHasVertex | filter::kShaded),
@@ -39,7 +41,8 @@ struct RecordSet {
         visibility(count),
         hit_distance(count, 1),
         direction(count, Vec3(0, 1, 0)),
-        material(count) {}
+        material(count),
+        roughness(count, 1) {}
 
   [[nodiscard]] std::size_t size() const { return flags.size(); }
   // Records [first, last) as the filter sees them.
@@ -50,7 +53,7 @@ struct RecordSet {
     return {part(flags),        part(position),    part(distance),   part(throughput),
             part(contribution), part(unfiltered),  part(pixel),      part(camera),
             part(normal),       part(reflectance), part(visibility), part(hit_distance),
-            part(direction),    part(material)};
+            part(direction),    part(material),    part(roughness)};
   }
   [[nodiscard]] filter::Records view() const { return view(0, size()); }
 };
@@ -66,6 +69,7 @@ inline RecordSet random_records(std::size_t count, std::uint32_t seed, double sh
     return static_cast<std::uint32_t>(random() % n);
   };
   const auto unit = [&random] { return std::uniform_real_distribution<float>(0, 1)(random); };
+  std::mt19937 again(seed + 1);
   RecordSet set(count);
   std::uint32_t camera = 0, pixel = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -89,6 +93,7 @@ inline RecordSet random_records(std::size_t count, std::uint32_t seed, double sh
     set.hit_distance[i] = below(4) == 0 ? std::numeric_limits<float>::infinity()
                                         : 0.7f * static_cast<float>(1 + below(8));
     set.material[i] = below(2);
+    set.roughness[i] = std::array{0.55f, 0.8f, 0.95f, 1.0f}[again() % 4];
     set.camera[i] = static_cast<std::uint16_t>(camera);
     set.pixel[i] = pixel;
     if (++pixel == cameras[camera].width * cameras[camera].height) {
@@ -109,6 +114,7 @@ inline filter::WeightTerms terms_of(unsigned bits) {
   if ((bits & 16) != 0) terms.plane = 0.4f;
   if ((bits & 32) != 0) terms.direction = 0.93f;
   terms.material = (bits & 64) != 0;
+  if ((bits & 128) != 0) terms.gloss = 6.0f;
   return terms;
 }
 

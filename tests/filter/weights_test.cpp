@@ -27,6 +27,10 @@ TEST_CASE("Thresholds belong to the set that passes") {
   CHECK_FALSE(filter::visibility_term(5, 4));
   CHECK(filter::material_term(0, 0));
   CHECK_FALSE(filter::material_term(0, 1));
+  // 0.35 and 10 times 0.12 are the legs of 1.25.
+  const Vec3 n_j(0.35f, 0, 0), omega_j(0, 0.12f, 0), zero(0, 0, 0);
+  CHECK(filter::gloss_term(zero, n_j, zero, omega_j, 0.5f, 2.5001f));
+  CHECK_FALSE(filter::gloss_term(zero, n_j, zero, omega_j, 0.5f, 2.4999f));
 }
 
 TEST_CASE("Hit distances compare relative to the longer, misses only to misses") {
@@ -41,7 +45,7 @@ TEST_CASE("Hit distances compare relative to the longer, misses only to misses")
 
 TEST_CASE("Refusers are empty exactly where the product passes") {
   const tests::RecordSet set = tests::random_records(400, 1, 0, kCamera);
-  filter::WeightTerms terms{0.9f, 0.05f, true, 0.5f, 0.4f, 0.5f, true};
+  filter::WeightTerms terms{0.9f, 0.05f, true, 0.5f, 0.4f, 0.5f, true, 6.0f};
   const filter::Weights weights(set.view(), terms);
   std::size_t passed = 0, wrong = 0;
   for (std::uint32_t i = 0; i < 400; ++i) {
@@ -62,7 +66,7 @@ TEST_CASE("Each term more can only shrink the set of every record") {
   parameters.radius = {0.3, filter::RadiusBasis::distance};
   std::vector<float> radius;
   filter::radii(parameters.radius, set.view(), block, radius);
-  const filter::WeightTerms all{0.93f, 0.05f, true, 0.3f, 0.4f, 0.93f, true};
+  const filter::WeightTerms all{0.93f, 0.05f, true, 0.3f, 0.4f, 0.93f, true, 6.0f};
   const auto neighbors = [&](unsigned bits) {
     filter::WeightTerms& w = parameters.weights = filter::WeightTerms::none();
     if ((bits & 1) != 0) w.normal = all.normal;
@@ -72,11 +76,12 @@ TEST_CASE("Each term more can only shrink the set of every record") {
     if ((bits & 16) != 0) w.plane = all.plane;
     if ((bits & 32) != 0) w.direction = all.direction;
     w.material = (bits & 64) != 0;
+    if ((bits & 128) != 0) w.gloss = all.gloss;
     return filter::average(set.view(), radius, block, parameters).neighbors;
   };
-  for (unsigned term = 1; term < 128; term *= 2) {
+  for (unsigned term = 1; term < 256; term *= 2) {
     std::size_t grew = 0, shrank = 0;
-    for (const unsigned others : {0u, 1u, 2u, 12u, 127u}) {
+    for (const unsigned others : {0u, 1u, 2u, 12u, 255u}) {
       const auto without = neighbors(others & ~term), with = neighbors(others | term);
       for (std::size_t i = 0; i < set.size(); ++i) {
         grew += with[i] > without[i] ? 1u : 0u;
@@ -98,7 +103,7 @@ TEST_CASE("A term whose channel is missing is an error that names both") {
       set.flags,        set.position,    set.distance, set.throughput,
       set.contribution, set.unfiltered,  set.pixel,    set.camera,
       set.normal,       set.reflectance, {},           set.hit_distance,
-      set.direction,    set.material};
+      set.direction,    set.material,    set.roughness};
   const filter::Block block{0, 1, 1, kCamera};
   CHECK_THROWS_WITH(filter::average(records, std::vector<float>(3, 1.0f), block, parameters),
                     "the records have no channel visibility, which --visibility needs");

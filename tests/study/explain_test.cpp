@@ -23,7 +23,7 @@ std::vector<std::pair<std::string, FilterRun>> ways() {
     return &list.back().second.parameters;
   };
   add("two terms", "2passes", 3);
-  add("all terms", "all", 127);
+  add("all terms", "all", 255);
   add("blocks of b^m", "2^6", 1);
   add("demodulated", "1pass", 4)->demodulate = true;
   add("iterated", "all", 4)->iterations = 3;
@@ -136,7 +136,7 @@ TEST_CASE("Refusals are those that the filter counts, alone ones what a term's a
   write_dump(folder / "a.pvb", random_records(400, 5, 0.2, kOne), {kOne, {200, 200}, {}});
   const study::Dump dump(folder / "a.pvb");
   FilterRun run = default_run("all");
-  run.parameters.weights = terms_of(127);
+  run.parameters.weights = terms_of(255);
   run.parameters.search = search::Kind::brute;
   run.parameters.count_refusals = true;
   const filter::Statistics all = study::filter_dump(dump, run).statistics;
@@ -154,7 +154,7 @@ TEST_CASE("Refusals are those that the filter counts, alone ones what a term's a
   CHECK(refused == all.refused);
   for (unsigned k = 0; k < filter::kTermCount; ++k) {
     FilterRun without = run;
-    without.parameters.weights = terms_of(127u & ~(1u << k));
+    without.parameters.weights = terms_of(255u & ~(1u << k));
     INFO(filter::kTermNames[k]);
     CHECK(alone[k] == study::filter_dump(dump, without).statistics.accepted - all.accepted);
     CHECK((alone[k] > 0 || k == 0 || k == 5));  // these two go together in these records

@@ -35,16 +35,16 @@ TEST_CASE("The pixel without a term, and with another, is the picture without it
     for (const study::Remedy& remedy : whence.remedies) {
       if (++proposed[remedy.term] > 3) continue;
       filter::WeightTerms terms = run.parameters.weights;
-      const std::array<std::optional<float>*, 7> thresholds = {
+      const std::array<std::optional<float>*, 8> thresholds = {
           &terms.normal, &terms.reflectance, nullptr, &terms.hit_distance,
-          &terms.plane,  &terms.direction,   nullptr};
+          &terms.plane,  &terms.direction,   nullptr, &terms.gloss};
       if (thresholds[remedy.term] != nullptr) *thresholds[remedy.term] = remedy.threshold;
       terms.material = terms.material || remedy.term == 6;
       wrong += is_close(remedy.pixel, colour_at(picture_with(terms), "", pixel)) ? 0u : 1u;
     }
   });
   CHECK(wrong == 0);
-  for (const std::size_t term : std::array<std::size_t, 6>{0, 1, 3, 4, 5, 6})
+  for (const std::size_t term : std::array<std::size_t, 7>{0, 1, 3, 4, 5, 6, 7})
     CHECK(proposed[term] > 0);
   CHECK(proposed[2] == 0);  // it is on
 }

@@ -59,7 +59,8 @@ TEST_CASE("Chosen passes act as a dump of their own") {
   cut(tail.flags), cut(tail.position), cut(tail.distance), cut(tail.throughput),
       cut(tail.contribution);
   cut(tail.unfiltered), cut(tail.pixel), cut(tail.camera), cut(tail.normal), cut(tail.reflectance);
-  cut(tail.visibility), cut(tail.hit_distance), cut(tail.direction), cut(tail.material);
+  cut(tail.visibility), cut(tail.hit_distance), cut(tail.direction), cut(tail.material),
+      cut(tail.roughness);
   tests::write_dump(folder / "tail.pvb", tail, {kOne, {200, 200}, {}});
   FilterRun run = default_run();
   const auto expected = filtered(folder / "tail.pvb", run);

@@ -65,6 +65,7 @@ inline void write_dump(const std::string& path, const RecordSet& set, const Dump
   add("hit_distance", Type::f32, 1, set.hit_distance.data());
   add("direction", Type::f32, 3, set.direction.data());
   add("material", Type::u32, 1, set.material.data());
+  add("roughness", Type::f32, 1, set.roughness.data());
 
   formats::WriterOptions writer_options;
   writer_options.codec = options.codec;

@@ -59,6 +59,22 @@ TEST_CASE("arcade: at most an eighth of the error is left") {
   CHECK(gain(kSamples + "arcade.json", kSamples + "arcade-reference.exr") >= 8);
 }
 
+TEST_CASE("Glossy surfaces at the first hit: the filter does not lose to none") {
+  const TempFolder folder;
+  const std::string scene =
+      "psf-render " + kSamples + "materials.json --size 64x64 --quiet " + "--vertex-roughness 0 ";
+  const std::string dump = folder / "dump.pvb", reference = folder / "reference.exr";
+  run_well(scene + "--passes 256 --seed 1 --image " + reference + " -o " + folder / "other.pvb");
+  run_well(scene + "--passes 16 -o " + dump + " --image " + folder / "before.exr");
+  const double before = relative_mse(folder / "before.exr", reference);
+  const auto after = [&](const std::string& options) {
+    run_well("psf filter " + dump + " --quiet -o " + folder / "after.exr" + options);
+    return relative_mse(folder / "after.exr", reference);
+  };
+  CHECK(after("") < before);
+  CHECK(after(" --gloss off") > before);
+}
+
 TEST_CASE("Sponza with sky and sun: at most a fifth of the error is left", "[.][long]") {
   const std::string scenes = shared_scenes();
   if (scenes.empty()) {

@@ -130,6 +130,7 @@ Sample make_box(std::size_t records) {
   const std::size_t pixels = side * side;
   Sample sample;
   sample.parameters.radius.delta = 0;
+  sample.parameters.weights.gloss.reset();  // all is diffuse
   sample.cameras = {{static_cast<std::uint32_t>(side), static_cast<std::uint32_t>(side),
                      2 * double{kTanHalfFov} / static_cast<double>(side)}};
   Painter painter(side, sample.records);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "filter/inputs.h"
 
 namespace psf::bench {
 namespace {
@@ -21,6 +22,7 @@ filter::Parameters parameters_for(const study::Dump& dump) {
   if (!has("normal")) parameters.weights.normal.reset();
   if (!has("reflectance")) parameters.weights.reflectance.reset();
   if (!has("visibility")) parameters.weights.visibility = false;
+  if (!has("normal") || !has("direction") || !has("roughness")) parameters.weights.gloss.reset();
   return parameters;
 }
 
@@ -32,6 +34,8 @@ Sample read_sample(const study::Dump& dump, std::size_t records) {
   sample.parameters = parameters_for(dump);
   const std::uint64_t count = std::min(std::uint64_t{records}, dump.reader().records());
   dump.read({0, count}, dump.select(sample.parameters, false), sample.records);
+  sample.parameters.weights =
+      filter::terms_in_use(sample.records.view(), sample.parameters.weights);
   for (const std::uint64_t bound : dump.pass_bounds()) {
     if (bound <= count) sample.passes.push_back(bound);
   }
@@ -52,7 +56,7 @@ filter::Records part(const filter::Records& records, std::size_t first, std::siz
           cut(records.throughput),  cut(records.contribution), cut(records.unfiltered),
           cut(records.pixel),       cut(records.camera),       cut(records.normal),
           cut(records.reflectance), cut(records.visibility),   cut(records.hit_distance),
-          cut(records.direction),   cut(records.material)};
+          cut(records.direction),   cut(records.material),     cut(records.roughness)};
 }
 
 }  // namespace psf::bench

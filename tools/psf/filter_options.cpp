@@ -25,6 +25,7 @@ filter::WeightTerms weights_of(const ParameterOptions& options) {
   set(terms.hit_distance, options.hit_distance, "--hit-distance");
   set(terms.plane, options.plane, "--plane");
   set(terms.direction, options.direction, "--direction");
+  set(terms.gloss, options.gloss, "--gloss");
   terms.visibility = options.visibility.value_or(terms.visibility);
   terms.material = options.material;
   return terms;
@@ -41,6 +42,9 @@ void add_weights(CLI::App& command, ParameterOptions& options) {
   term("--plane", options.plane, "at most T radii off the tangent plane (default off)");
   term("--direction", options.direction,
        "directions to the camera: omega_i . omega_j >= T (default off)");
+  term("--gloss", options.gloss,
+       "on glossy surfaces: norm(n_i - n_j, 10 (omega_i - omega_j)) <= T roughness_i^2 (default "
+       "0.8)");
   command
       .add_flag_function(
           "--visibility", [&options](std::int64_t on) { options.visibility = on > 0; },

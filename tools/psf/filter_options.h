@@ -19,7 +19,7 @@ namespace psf::tools {
 // Every parameter of the filter but what a run counts.
 struct ParameterOptions {
   // As written; empty: the default.
-  std::string r0, block, normal, reflectance, hit_distance, plane, direction, sources;
+  std::string r0, block, normal, reflectance, hit_distance, plane, direction, gloss, sources;
   double delta = filter::Radius().delta, agree = filter::Parameters().agree;
   std::optional<bool> visibility;
   bool material = false, no_weights = false;

@@ -119,6 +119,7 @@ void add_parameter_lists(CLI::App& command, ParameterLists& lists) {
   add("--hit-distance", lists.hit_distance, "LIST", "thresholds and off (default off)");
   add("--plane", lists.plane, "LIST", "thresholds and off (default off)");
   add("--direction", lists.direction, "LIST", "thresholds and off (default off)");
+  add("--gloss", lists.gloss, "LIST", "thresholds and off (default 0.8)");
   add("--material", lists.material, "LIST", "of on, off (default off)");
   add("--demodulate", lists.demodulate, "LIST", "of on, off (default off)");
   add("--iterations", lists.iterations, "LIST", "1,2 (default 1)");
@@ -174,6 +175,7 @@ std::vector<filter::Parameters> all_sets(const ParameterLists& lists) {
   multiply(lists.hit_distance, "--hit-distance", text_of(&Options::hit_distance));
   multiply(lists.plane, "--plane", text_of(&Options::plane));
   multiply(lists.direction, "--direction", text_of(&Options::direction));
+  multiply(lists.gloss, "--gloss", text_of(&Options::gloss));
   multiply(lists.material, "--material", [](Options& set, const std::string& value) {
     set.material = parse_switch(value, "--material");
   });

@@ -13,7 +13,7 @@ namespace psf::tools {
 // As written: "2px,4px", "2px:32px:x2", "0.1:0.5:0.1", "0.9,off". Empty: the default alone.
 struct ParameterLists {
   std::string r0, delta, radius_count, block, normal, reflectance, visibility, hit_distance, plane,
-      direction, material, demodulate, iterations, sources, estimator, agree;
+      direction, gloss, material, demodulate, iterations, sources, estimator, agree;
   bool no_weights = false;  // no terms but those given
 };
 

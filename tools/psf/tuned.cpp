@@ -36,6 +36,7 @@ void read_tuned(const std::string& path, ParameterOptions& options) {
   options.hit_distance = text("hit-distance");
   options.plane = text("plane");
   options.direction = text("direction");
+  options.gloss = text("gloss");
   options.material = text("material") == "on";
   options.demodulate = text("demodulate") == "on";
   number("iterations", options.iterations);

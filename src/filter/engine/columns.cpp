@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 
+#include "filter/weights.h"
+
 namespace psf::filter::engine {
 
 ColumnPlan::ColumnPlan(const WeightTerms& terms) {
@@ -13,12 +15,13 @@ ColumnPlan::ColumnPlan(const WeightTerms& terms) {
     count += columns;
   };
   // The tangent plane is that of the query, which has the columns of a source.
-  take(terms.normal || terms.plane, normal, 3);
+  take(terms.normal || terms.plane || terms.gloss, normal, 3);
   take(terms.reflectance.has_value(), reflectance, 3);
   take(terms.visibility, visibility, 1);
   take(terms.hit_distance.has_value(), hit_distance, 1);
-  take(terms.direction.has_value(), direction, 3);
+  take(terms.direction || terms.gloss, direction, 3);
   take(terms.material, material, 1);
+  take(terms.gloss.has_value(), lobe_width, 1);
 }
 
 void ColumnPlan::gather(const Records& records, std::span<const std::uint32_t> chosen,
@@ -49,6 +52,11 @@ void ColumnPlan::gather(const Records& records, std::span<const std::uint32_t> c
   }
   if (direction) put3(*direction, records.direction);
   if (material) put_bits(*material, records.material);
+  if (lobe_width) {
+    for (std::size_t k = 0; k < kWidth; ++k) {
+      out[*lobe_width * kWidth + k] = filter::lobe_width(records.roughness[i[k]]);
+    }
+  }
 }
 
 }  // namespace psf::filter::engine

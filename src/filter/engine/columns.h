@@ -14,8 +14,8 @@ namespace psf::filter::engine {
 // Records a group, groups a family, queries a packet: the values of the widest vector.
 inline constexpr std::size_t kWidth = 16;
 
-// Every column there may be: 3 of x_i and what the seven terms add.
-inline constexpr std::size_t kMaxColumns = 15;
+// Every column there may be: 3 of x_i and what the eight terms add.
+inline constexpr std::size_t kMaxColumns = 16;
 
 // First columns of what is in use; x_i is always at 0. Integers are kept as floats of the same
 // bits.
@@ -23,8 +23,8 @@ struct ColumnPlan {
   explicit ColumnPlan(const WeightTerms& terms);
 
   std::size_t count = 3;
-  std::optional<std::size_t> normal, reflectance, direction;      // three columns
-  std::optional<std::size_t> visibility, hit_distance, material;  // one
+  std::optional<std::size_t> normal, reflectance, direction;                  // three columns
+  std::optional<std::size_t> visibility, hit_distance, material, lobe_width;  // one
 
   // Integers are ordered as such.
   [[nodiscard]] bool is_integer(std::size_t column) const {

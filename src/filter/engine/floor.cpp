@@ -21,7 +21,7 @@ struct Strewn {
   std::vector<Vec3> position, normal, direction;
   std::vector<Rgb> reflectance, value;
   std::vector<std::uint32_t> bits;
-  std::vector<float> hit_distance;
+  std::vector<float> hit_distance, roughness;
 
   Strewn() {
     std::mt19937 random(1);
@@ -44,6 +44,7 @@ struct Strewn {
       value.emplace_back(unit());
       bits.push_back(static_cast<std::uint32_t>(random() % 2));
       hit_distance.push_back(0.1f + unit());
+      roughness.push_back(unit());
     }
   }
 
@@ -55,6 +56,7 @@ struct Strewn {
     records.reflectance = reflectance;
     records.visibility = records.material = bits;
     records.hit_distance = hit_distance;
+    records.roughness = roughness;
     return records;
   }
 };

@@ -169,19 +169,42 @@ struct Plane {
   }
 };
 
+// Looks at columns that do not follow each other, from the first of all on.
+struct Gloss {
+  std::size_t normal, direction, width;  // first columns
+  Distance n, omega;                     // of the query
+  V t, reach_sq;
+
+  template <class Source>
+  [[nodiscard]] HWY_INLINE M pass(const Source& source) const {
+    return hn::Le(weighted(n.to(Source{source.at + normal * kWidth}),
+                           omega.to(Source{source.at + direction * kWidth})),
+                  reach_sq);
+  }
+  [[nodiscard]] HWY_INLINE Verdict judge(const PacketBounds& queries,
+                                         const FamilyBounds& nodes) const {
+    const Interval d_n = Distance::between(queries, nodes, normal);
+    const Interval d_omega = Distance::between(queries, nodes, direction);
+    const Interval w = queries.interval(width);
+    return {hn::Gt(weighted(d_n.low, d_omega.low), square(hn::Mul(t, w.high))),
+            hn::Le(weighted(d_n.high, d_omega.high), square(hn::Mul(t, w.low)))};
+  }
+  static HWY_INLINE V weighted(V n_sq, V omega_sq) {
+    return hn::Add(n_sq, hn::Mul(hn::Set(kD, kDirectionWeight), omega_sq));
+  }
+  static HWY_INLINE V square(V reach) { return hn::Mul(reach, reach); }
+};
+
 // The terms that are on, as the queries in some lanes of a packet see them. Term k has bit k, in
 // the order of kTermNames.
 class Terms {
  public:
   Terms(const ColumnPlan& plan, const WeightTerms& on, const Packet& packet, std::size_t lane)
       : plan_(plan), on_(on), packet_(packet), lane_(lane) {
-    const bool by[kTermCount] = {on.normal.has_value(),
-                                 on.reflectance.has_value(),
-                                 on.visibility,
-                                 on.hit_distance.has_value(),
-                                 on.plane.has_value(),
-                                 on.direction.has_value(),
-                                 on.material};
+    const bool by[kTermCount] = {on.normal.has_value(), on.reflectance.has_value(),
+                                 on.visibility,         on.hit_distance.has_value(),
+                                 on.plane.has_value(),  on.direction.has_value(),
+                                 on.material,           on.gloss.has_value()};
     for (std::size_t k = 0; k < kTermCount; ++k) bits_ |= std::uint32_t{by[k]} << k;
   }
 
@@ -226,6 +249,7 @@ class Terms {
       visit(std::size_t{5}, cosine(*plan_.direction, *on_.direction), *plan_.direction);
     }
     if (wants(6)) visit(std::size_t{6}, equal(*plan_.material), *plan_.material);
+    if (wants(7)) visit(std::size_t{7}, gloss(), std::size_t{0});
   }
 
  private:
@@ -237,6 +261,11 @@ class Terms {
   }
   [[nodiscard]] HWY_INLINE Cosine cosine(std::size_t c, float t) const {
     return {c, column(c), column(c + 1), column(c + 2), hn::Set(kD, t)};
+  }
+  [[nodiscard]] HWY_INLINE Gloss gloss() const {
+    const std::size_t n = *plan_.normal, omega = *plan_.direction, w = *plan_.lobe_width;
+    const V t = hn::Set(kD, *on_.gloss);
+    return {n, omega, w, distance(n), distance(omega), t, Gloss::square(hn::Mul(t, column(w)))};
   }
   [[nodiscard]] HWY_INLINE Equal equal(std::size_t c) const {
     return {c, hn::BitCast(kDI, column(c))};

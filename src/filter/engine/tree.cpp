@@ -77,7 +77,7 @@ void Tree::fill_last_family(LevelName level) {
 bool Tree::all_within(float largest) const {
   const std::size_t families = core::range_count(nodes(kGroups), kWidth);
   for (std::size_t c = 0; c < plan_.count; ++c) {
-    if (plan_.is_integer(c) || c == plan_.hit_distance) continue;
+    if (plan_.is_integer(c) || c == plan_.hit_distance || c == plan_.lobe_width) continue;
     for (std::size_t family = 0; family < families; ++family) {
       const float* low = bounds(kGroups, family) + c * kWidth;
       const float* high = low + plan_.count * kWidth;

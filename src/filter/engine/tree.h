@@ -54,7 +54,8 @@ class Tree {
   [[nodiscard]] const float* bounds(LevelName level, std::size_t family) const {
     return &levels_[level].bounds[family * 2 * columns(level) * kWidth];
   }
-  // Of every column that is neither a distance to a hit nor an integer: abs(value) <= largest.
+  // Of every column that is neither a distance to a hit nor a width nor an integer: abs(value) <=
+  // largest.
   [[nodiscard]] bool all_within(float largest) const;
   [[nodiscard]] std::size_t columns(LevelName level) const {
     return level == kQuads ? 3 : plan_.count;

@@ -129,7 +129,7 @@ class Control {
         roles.queries.push_back(i);
     }
     if (roles.sources.empty()) return;
-    const Weights weights(r_, p_.weights);
+    const Weights weights(r_, terms_in_use(r_, p_.weights));
     const Problem problem{r_, roles, radius_, weights, {}};
     const std::unique_ptr<Engine> engine = make_engine(p_.search, problem);
     result_.statistics.seconds_index += seconds_since(start);

@@ -85,6 +85,7 @@ CellKey KeyMaker::operator()(std::uint32_t i, float r_i, int coarser) const {
   if (on_.normal) normals_.write(r_.normal[i], bits, key.normal);
   if (on_.reflectance) reflectances_.write(r_.reflectance[i], 0, key.reflectance);
   if (on_.direction) directions_.write(r_.direction[i], scramble(bits), key.direction);
+  if (on_.gloss) write_lobe(i, scramble(~bits), key);
   if (on_.hit_distance) key.hit_distance = hit_distance(r_.hit_distance[i]);
   if (on_.visibility) key.visibility = r_.visibility[i];
   if (on_.material) key.material = r_.material[i];
@@ -112,6 +113,22 @@ void KeyMaker::place(std::uint32_t i, double r_i, int coarser, CellKey& key) con
     const double jitter = a * double{u[axis]} + b * double{v[axis]};
     key.place[axis] = whole(double{r_.position[i][axis]} / cell + jitter + kOffset[axis]);
   }
+}
+
+// Widths are rounded down to a power of two, and half of the square of what it allows is each of
+// the normal's and the direction's.
+void KeyMaker::write_lobe(std::uint32_t i, std::uint64_t bits, CellKey& key) const {
+  const double width = double{lobe_width(r_.roughness[i])};
+  if (std::isinf(width)) {
+    key.lobe_level = std::numeric_limits<float>::max();
+    return;
+  }
+  const double least = width > 0 ? std::ldexp(1, std::ilogb(width)) : 0;
+  const double reach = double{*on_.gloss} * least / std::sqrt(2);
+  key.lobe_level = static_cast<float>(least);
+  Cubes(reach, true).write(r_.normal[i], bits, key.lobe_normal);
+  Cubes(reach / std::sqrt(double{kDirectionWeight}), true)
+      .write(r_.direction[i], scramble(bits), key.lobe_direction);
 }
 
 float KeyMaker::hit_distance(float h) const {

@@ -13,13 +13,14 @@ namespace psf::filter {
 struct CellKey {
   float place[3] = {}, level = 0;
   float normal[3] = {}, reflectance[3] = {}, direction[3] = {}, hit_distance = 0;
+  float lobe_normal[3] = {}, lobe_direction[3] = {}, lobe_level = 0, unused = 0;
   std::uint32_t visibility = 0, material = 0;
 
   // Below, equal or above 0, as memcmp().
   [[nodiscard]] int compare(const CellKey& other) const;
   [[nodiscard]] std::uint64_t hash() const;
 };
-static_assert(sizeof(CellKey) == 64, "bytes of a key are compared, so there are no holes in it");
+static_assert(sizeof(CellKey) == 96, "bytes of a key are compared, so there are no holes in it");
 
 // Vectors counted in cubes, such that any two of one cube are at most `reach` apart. A whole number
 // of cubes goes into 1, and 0 and 1, the components of walls, lie in the middle of a cube, where
@@ -56,6 +57,7 @@ class KeyMaker {
  private:
   void place(std::uint32_t i, double r_i, int coarser, CellKey& key) const;
   [[nodiscard]] float hit_distance(float h) const;
+  void write_lobe(std::uint32_t i, std::uint64_t bits, CellKey& key) const;
 
   Records r_;
   WeightTerms on_;

@@ -34,6 +34,7 @@ ChannelSet select_all(const Dump& dump, const filter::Parameters& parameters) {
   if (has("material")) all.weights.material = true;
   if (has("hit_distance")) all.weights.hit_distance = 0.0f;
   if (has("direction")) all.weights.direction = 0.0f;
+  if (has("roughness") && has("normal") && has("direction")) all.weights.gloss = 1.0f;
   if (has("distance") && all.radius.basis == filter::RadiusBasis::world) {
     all.radius.basis = filter::RadiusBasis::distance;
   }
@@ -58,6 +59,7 @@ void append(const filter::Records& from, std::size_t i, BlockRecords& to) {
   copy(from.hit_distance, to.hit_distance);
   copy(from.direction, to.direction);
   copy(from.material, to.material);
+  copy(from.roughness, to.roughness);
 }
 
 class Explainer {

@@ -24,10 +24,11 @@ namespace psf::study {
 std::uint64_t write_ply(const Explanation& explanation, const Whence& whence,
                         const std::string& path);
 
-// By term of filter::kTermNames: blue, orange, sky blue, green, yellow, vermilion, purple; distinct
+// By term of filter::kTermNames: blue, orange, sky blue, green, yellow, vermilion, purple,
+// black; distinct
 // to colour-blind eyes, too (Okabe and Ito).
-inline constexpr std::uint8_t kTermColours[7][3] = {{0, 114, 178},  {230, 159, 0},  {86, 180, 233},
-                                                    {0, 158, 115},  {240, 228, 66}, {213, 94, 0},
-                                                    {204, 121, 167}};
+inline constexpr std::uint8_t kTermColours[8][3] = {{0, 114, 178},   {230, 159, 0},  {86, 180, 233},
+                                                    {0, 158, 115},   {240, 228, 66}, {213, 94, 0},
+                                                    {204, 121, 167}, {0, 0, 0}};
 
 }  // namespace psf::study

@@ -18,12 +18,14 @@ enum Term : std::size_t {
   kHitDistance,
   kPlane,
   kDirection,
-  kMaterial
+  kMaterial,
+  kGloss
 };
 
 // Thresholds that a person would try, from the loosest to the strictest.
 constexpr std::array kCosines = {0.5f, 0.7f, 0.8f, 0.9f, 0.95f, 0.98f, 0.99f, 0.995f, 0.999f};
 constexpr std::array kDifferences = {1.0f, 0.5f, 0.2f, 0.1f, 0.05f, 0.02f, 0.01f, 0.005f};
+constexpr std::array kLobes = {4.0f, 2.0f, 1.0f, 0.5f, 0.25f};
 constexpr std::array kOn = {1.0f};
 
 Colour wide(const Vec3& v) {
@@ -59,6 +61,10 @@ std::span<const float> ladder(const Explanation& e, std::size_t term) {
       return v.normal.empty() ? std::span<const float>() : down(kDifferences, on.plane);
     case kDirection:
       return v.direction.empty() ? std::span<const float>() : up(kCosines, on.direction);
+    case kGloss:
+      return v.normal.empty() || v.direction.empty() || v.roughness.empty()
+                 ? std::span<const float>()
+                 : down(kLobes, on.gloss);
     default:
       return flag(!v.material.empty(), on.material);
   }
@@ -85,6 +91,9 @@ filter::WeightTerms only(std::size_t term, float threshold) {
     case kDirection:
       terms.direction = threshold;
       break;
+    case kGloss:
+      terms.gloss = threshold;
+      break;
     default:
       terms.material = true;
       break;
@@ -95,13 +104,10 @@ filter::WeightTerms only(std::size_t term, float threshold) {
 }  // namespace
 
 std::array<bool, filter::kTermCount> terms_on(const filter::WeightTerms& terms) {
-  return {terms.normal.has_value(),
-          terms.reflectance.has_value(),
-          terms.visibility,
-          terms.hit_distance.has_value(),
-          terms.plane.has_value(),
-          terms.direction.has_value(),
-          terms.material};
+  return {terms.normal.has_value(), terms.reflectance.has_value(),
+          terms.visibility,         terms.hit_distance.has_value(),
+          terms.plane.has_value(),  terms.direction.has_value(),
+          terms.material,           terms.gloss.has_value()};
 }
 
 Colour PixelIf::unfiltered(std::uint32_t vertex) const {
