@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "study/median_around.h"
-#include "study/noise_share.h"
 #include "study/variants.h"
 
 namespace psf::study {
@@ -33,7 +33,7 @@ class Tiles {
   }
   [[nodiscard]] double sum() const { return sum_; }
   [[nodiscard]] double standard_error() const { return standard_error_beyond(1, Tiles()); }
-  // Standard error of `factor` times the sum of these minus that of others.
+  // Standard error of `factor` times the sum of these minus that of others; one tile has none.
   [[nodiscard]] double standard_error_beyond(double factor, const Tiles& others) const {
     const auto count = static_cast<double>(values_.size());
     double sum = 0, squares = 0;
@@ -42,7 +42,7 @@ class Tiles {
       sum += value;
       squares += value * value;
     }
-    if (count < 2) return 0;
+    if (count < 2) return std::numeric_limits<double>::infinity();
     const double variance = std::max(0.0, (squares - sum * sum / count) / (count - 1));
     return std::sqrt(variance * count);
   }
@@ -77,7 +77,7 @@ class Tuner {
       traverse(traversal);
       ++done_;
     }
-    tuning_.u_share = noise_shares(dump_, t_.passes, t_.epsilon)[t_.camera].share();
+    tuning_.noise = noise_shares(dump_, t_.passes, t_.epsilon)[t_.camera];
     choose();
     return std::move(tuning_);
   }
@@ -254,7 +254,7 @@ class Tuner {
       const double noise = tiles_[row].standard_error_beyond(1, best);
       const double above = rows[row].error - rows[tuning_.best].error;
       rows[row].distance = noise > 0 ? above / noise : 0;
-      // The constant is left out: with it, were it known, the sets would differ less.
+      // Without the constant sets seem to differ by more than they do, which is the safe side.
       const double more = (1 + kTolerance) * tiles_[row].sum() - best.sum();
       rows[row].may_be_better =
           more < kSure * tiles_[row].standard_error_beyond(1 + kTolerance, best);

@@ -10,6 +10,7 @@
 
 #include "filter/parameters.h"
 #include "study/dump.h"
+#include "study/noise_share.h"
 #include "study/passes.h"
 
 namespace psf::study {
@@ -39,7 +40,7 @@ struct Tuning {
   std::size_t parts = 0;      // that were compared
   double unfiltered = 0;      // relMSE of the unfiltered picture
   double u_variance = 0;      // what of it is of u: in every set's error, and in no choice
-  double u_share = 0;         // of the noise without filter: NoiseShare::share()
+  NoiseShare noise;           // of the unfiltered picture
   // The least bias_sq where it is below 0, else 0: parts of one low-discrepancy sequence make up
   // for each other, so that their noise correlates and every bias_sq is off by this much.
   double constant = 0;

@@ -155,6 +155,26 @@ TEST_CASE("The noise of u is told apart and decides nothing") {
   }
 }
 
+TEST_CASE("A picture of one tile says nothing of its noise") {
+  const tests::TempFolder folder;
+  RecordSet set(8 * 8 * 4);
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    set.pixel[i] = static_cast<std::uint32_t>(i % 64);
+    set.contribution[i].x = static_cast<float>(i % 7);
+  }
+  tests::DumpOptions options;
+  options.cameras = {{8, 8, 1.0 / 8}};
+  options.passes.assign(4, 64);
+  tests::write_dump(folder / "a.pvb", set, options);
+  const std::vector<filter::Parameters> sets = radii(1);
+  study::Tune tune;
+  tune.sets = sets;
+  const study::Tuning tuning = study::tune(study::Dump(folder / "a.pvb"), tune);
+  for (std::size_t k = 0; k < sets.size(); ++k) {
+    CHECK(tuning.rows[k].may_be_better == (k != tuning.best));
+  }
+}
+
 TEST_CASE("One block alone has no parts to compare") {
   const tests::TempFolder folder;
   const study::Analytic scene(study::AnalyticScene::smooth);

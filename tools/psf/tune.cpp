@@ -14,6 +14,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "filter/parameters_text.h"
+#include "noise_report.h"
 #include "parameter_lists.h"
 #include "pass_range.h"
 #include "study/study_file.h"
@@ -88,12 +89,8 @@ void print(const study::Tuning& tuning, const study::Dump& dump) {
     fmt::print("not sure: its error may be more than {:.0f}% above that of {} of the {} sets\n",
                kPercent * study::kTolerance, doubtful, tuning.rows.size());
   }
-  if (std::isfinite(tuning.u_share)) {
-    fmt::print(
-        "u has {:.1f}% of the noise without filter, {:.4g} of every error: no parameter "
-        "reaches it\n",
-        kPercent * tuning.u_share, tuning.u_variance);
-  }
+  fmt::print("u's share of the noise, which no parameter reaches: {}; {:.3g} of each error\n",
+             share_text(tuning.noise), tuning.u_variance);
   if (!tuning.has_independent_paths) {
     fmt::print(
         "the passes of a {} sequence are not independent: the noise of its parts correlates by "
@@ -143,23 +140,23 @@ void run(const TuneOptions& options) {
   if (options.common.json.empty()) return;
   study::Json rows = study::Json::array();
   for (const study::TuneRow* row : by_error(tuning)) rows.push_back(to_json(*row));
-  const study::Json share =
-      std::isfinite(tuning.u_share) ? study::Json(tuning.u_share) : study::Json();
-  const study::Json json = {{"kind", "tune"},
-                            {"format", study::kStudyFormat},
-                            {"version", kVersion},
-                            {"input", study::describe_input(dump, tune.passes, tune.camera)},
-                            {"epsilon", options.epsilon},
-                            {"unfiltered", tuning.unfiltered},
-                            {"u_variance", tuning.u_variance},
-                            {"u_share", share},
-                            {"constant", tuning.constant},
-                            {"correlation", tuning.correlation},
-                            {"independent_paths", tuning.has_independent_paths},
-                            {"parts", tuning.parts},
-                            {"sure", may_be_better(tuning) == 0},
-                            {"best", to_json(tuning.rows[tuning.best])},
-                            {"rows", rows}};
+  const formats::CameraInfo& camera = dump.metadata().cameras[tune.camera];
+  const study::Json json = {
+      {"kind", "tune"},
+      {"format", study::kStudyFormat},
+      {"version", kVersion},
+      {"input", study::describe_input(dump, tune.passes, tune.camera)},
+      {"epsilon", options.epsilon},
+      {"unfiltered", tuning.unfiltered},
+      {"u_variance", tuning.u_variance},
+      {"noise", noise_json(std::span(&tuning.noise, 1), std::span(&camera, 1))},
+      {"constant", tuning.constant},
+      {"correlation", tuning.correlation},
+      {"independent_paths", tuning.has_independent_paths},
+      {"parts", tuning.parts},
+      {"sure", may_be_better(tuning) == 0},
+      {"best", to_json(tuning.rows[tuning.best])},
+      {"rows", rows}};
   core::write_text_file(options.common.json, json.dump(1) + "\n");
   fmt::print("psf filter --tuned {} takes the choice\n", options.common.json);
 }
