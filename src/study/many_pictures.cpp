@@ -127,4 +127,13 @@ std::vector<Rgb> ManyPictures::unfiltered() const {
   return picture;
 }
 
+std::vector<Rgb> ManyPictures::u() const {
+  constexpr double kNothing[3] = {};
+  std::vector<Rgb> picture(paths_.size());
+  for (std::size_t pixel = 0; pixel < picture.size(); ++pixel) {
+    picture[pixel] = mean(&u_[pixel * 3], kNothing, static_cast<double>(paths_[pixel]));
+  }
+  return picture;
+}
+
 }  // namespace psf::study

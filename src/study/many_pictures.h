@@ -26,6 +26,8 @@ class ManyPictures {
   [[nodiscard]] std::vector<Rgb> filtered(std::size_t k) const;
   // (height, width) of the same paths without filter, as CameraPictures has it.
   [[nodiscard]] std::vector<Rgb> unfiltered() const;
+  // (height, width) of u alone: what no radius changes in filtered().
+  [[nodiscard]] std::vector<Rgb> u() const;
 
   // Radii that are added together.
   static constexpr std::size_t kTogether = 8;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "study/median_around.h"
 #include "study/variants.h"
 
 namespace psf::study {
@@ -30,16 +32,17 @@ class Tiles {
     sum_ += value;
   }
   [[nodiscard]] double sum() const { return sum_; }
-  // Standard error of the sum of these minus that of others.
-  [[nodiscard]] double standard_error(const Tiles* other = nullptr) const {
+  [[nodiscard]] double standard_error() const { return standard_error_beyond(1, Tiles()); }
+  // Standard error of `factor` times the sum of these minus that of others; one tile has none.
+  [[nodiscard]] double standard_error_beyond(double factor, const Tiles& others) const {
     const auto count = static_cast<double>(values_.size());
     double sum = 0, squares = 0;
     for (std::size_t k = 0; k < values_.size(); ++k) {
-      const double value = values_[k] - (other != nullptr ? other->values_[k] : 0);
+      const double value = factor * values_[k] - (others.values_.empty() ? 0 : others.values_[k]);
       sum += value;
       squares += value * value;
     }
-    if (count < 2) return 0;
+    if (count < 2) return std::numeric_limits<double>::infinity();
     const double variance = std::max(0.0, (squares - sum * sum / count) / (count - 1));
     return std::sqrt(variance * count);
   }
@@ -74,6 +77,7 @@ class Tuner {
       traverse(traversal);
       ++done_;
     }
+    tuning_.noise = noise_shares(dump_, t_.passes, t_.epsilon)[t_.camera];
     choose();
     return std::move(tuning_);
   }
@@ -93,46 +97,38 @@ class Tuner {
 
   void traverse(const Traversal& traversal) {
     const VariantGroup& group = *traversal.group;
-    const std::size_t count = traversal.count;
     ManyRun run = run_of(traversal);
     run.on_progress = [this](std::uint64_t done, std::uint64_t total) {
       if (t_.on_progress) t_.on_progress(done_ * total + done, traversals_.size() * total);
     };
     const ManyOutcome outcome = filter_many(dump_, run);
-    const auto pictures_of = [&](std::size_t part) -> const ManyPictures& {
-      return outcome.pictures[part * dump_.cameras().size() + t_.camera];
-    };
-    const auto filtered = [&](std::size_t k) {
+    const auto of_parts = [&](const auto& picture_of) {
       Parts parts;
       for (std::size_t part = 0; part < parts_; ++part) {
-        parts.push_back(pictures_of(part).filtered(k));
+        parts.push_back(picture_of(outcome.pictures[part * dump_.cameras().size() + t_.camera]));
       }
       return parts;
     };
-    Parts unfiltered;
-    for (std::size_t part = 0; part < parts_; ++part) {
-      unfiltered.push_back(pictures_of(part).unfiltered());
-    }
+    const Parts unfiltered =
+        of_parts([](const ManyPictures& pictures) { return pictures.unfiltered(); });
+    const Parts u = of_parts([](const ManyPictures& pictures) { return pictures.u(); });
     set_shares(group.parameters);
     if (done_ == 0) {
-      guess_by_median(filtered, count);
-      std::size_t best = 0;
-      for (std::size_t k = 0; k < count; ++k) {
-        measure(filtered(k), unfiltered, traversal.row(k));
-        const auto error = [&](std::size_t of) { return tiles_[traversal.row(of)].sum(); };
-        if (error(k) < error(best)) best = k;
-      }
-      const Parts chosen = filtered(best);
-      guesses_.clear();
-      for_pairs([&](std::size_t i, std::size_t j) { guesses_.push_back(guess(chosen, i, j)); });
-      measure_unfiltered(unfiltered);
+      guess(unfiltered);
+      measure_unfiltered(unfiltered, u);
     }
-    for (std::size_t k = 0; k < count; ++k) {
+    const auto filtered = [&](std::size_t k) {
+      return of_parts([k](const ManyPictures& pictures) { return pictures.filtered(k); });
+    };
+    std::size_t best = 0;
+    for (std::size_t k = 0; k < traversal.count; ++k) {
       TuneRow& row = tuning_.rows[traversal.row(k)];
-      measure(filtered(k), unfiltered, traversal.row(k));
+      measure(filtered(k), unfiltered, u, traversal.row(k));
       row.parameters = t_.sets[traversal.row(k)];
       row.neighbors = outcome.statistics[k].mean_neighbors();
+      if (tiles_[traversal.row(k)].sum() < tiles_[traversal.row(best)].sum()) best = k;
     }
+    if (done_ == 0) correlate(unfiltered, filtered(best));
   }
 
   // Of the paths, how many are in each part.
@@ -152,57 +148,23 @@ class Tuner {
     }
   }
 
-  // g for the parts i and j: the mean of all others, the darker of the two where there are none.
-  [[nodiscard]] Picture guess(const Parts& parts, std::size_t i, std::size_t j) const {
-    Picture picture(parts[0].size(), Rgb(0, 0, 0));
-    if (parts_ == kFewParts) {
-      for (std::size_t pixel = 0; pixel < picture.size(); ++pixel) {
-        for (int c = 0; c < 3; ++c) {
-          picture[pixel][c] = std::min(parts[i][pixel][c], parts[j][pixel][c]);
-        }
-      }
-      return picture;
-    }
-    const auto share = 1 / static_cast<float>(parts_ - 2);
+  void guess(const Parts& unfiltered) {
+    Picture all(unfiltered[0].size(), Rgb(0, 0, 0));
     for (std::size_t part = 0; part < parts_; ++part) {
-      if (part == i || part == j) continue;
-      for (std::size_t pixel = 0; pixel < picture.size(); ++pixel) {
-        picture[pixel] += parts[part][pixel] * share;
+      for (std::size_t pixel = 0; pixel < all.size(); ++pixel) {
+        all[pixel] += unfiltered[part][pixel] * static_cast<float>(shares_[part]);
       }
     }
-    return picture;
+    guess_ = median_around(all, width_);
   }
 
-  // The median over the sets, pixel by pixel.
-  template <class Filtered>
-  void guess_by_median(const Filtered& filtered, std::size_t count) {
-    std::vector<std::vector<Picture>> by_set;  // by set and pair
-    for (std::size_t k = 0; k < count; ++k) {
-      const Parts parts = filtered(k);
-      by_set.emplace_back();
-      for_pairs([&](std::size_t i, std::size_t j) { by_set[k].push_back(guess(parts, i, j)); });
-    }
-    guesses_ = by_set[0];
-    std::vector<float> values(count);
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
-    for (std::size_t pair = 0; pair < guesses_.size(); ++pair) {
-      for (std::size_t pixel = 0; pixel < guesses_[pair].size(); ++pixel) {
-        for (int c = 0; c < 3; ++c) {
-          for (std::size_t k = 0; k < count; ++k) values[k] = by_set[k][pair][pixel][c];
-          std::nth_element(values.begin(), middle, values.end());
-          guesses_[pair][pixel][c] = *middle;
-        }
-      }
-    }
-  }
-
-  // A value of a pixel in two parts.
+  // A component of a pixel in two parts.
   struct Place {
     std::size_t pixel;
     int c;
     std::size_t i, j;
-    double g, weight;  // weight: of its square, over pixels, colours and pairs
-    double shares;     // 1 / (1 / a_i + 1 / a_j)
+    double weight;  // of its square, over pixels, colours and pairs
+    double shares;  // 1 / (1 / a_i + 1 / a_j)
 
     [[nodiscard]] double of_i(const Parts& parts) const { return double{parts[i][pixel][c]}; }
     [[nodiscard]] double of_j(const Parts& parts) const { return double{parts[j][pixel][c]}; }
@@ -211,45 +173,63 @@ class Tuner {
   // Visits every place that is finite in both pictures.
   template <class Visit>
   void each(const Parts& x, const Parts& y, const Visit& visit) const {
-    const double values = 3 * static_cast<double>(width_ * height_ * guesses_.size());
-    std::size_t pair = 0;
+    const auto pairs = static_cast<double>(parts_ * (parts_ - 1) / 2);
+    const double values = 3 * static_cast<double>(width_ * height_) * pairs;
     for_pairs([&](std::size_t i, std::size_t j) {
-      const Picture& guess = guesses_[pair++];
       const double shares = shares_[i] * shares_[j] / (shares_[i] + shares_[j]);
-      for (std::size_t pixel = 0; pixel < guess.size(); ++pixel) {
+      for (std::size_t pixel = 0; pixel < guess_.size(); ++pixel) {
         if (!is_finite(x[i][pixel]) || !is_finite(x[j][pixel]) || !is_finite(y[i][pixel]) ||
-            !is_finite(y[j][pixel]) || !is_finite(guess[pixel])) {
+            !is_finite(y[j][pixel])) {
           continue;
         }
         for (int c = 0; c < 3; ++c) {
-          const double g = double{guess[pixel][c]};
-          visit(Place{pixel, c, i, j, g, 1 / ((g * g + t_.epsilon) * values), shares});
+          const double g = double{guess_[pixel][c]};
+          visit(Place{pixel, c, i, j, 1 / ((g * g + t_.epsilon) * values), shares});
         }
       }
     });
   }
 
-  void measure_unfiltered(const Parts& unfiltered) {
+  void measure_unfiltered(const Parts& unfiltered, const Parts& u) {
+    each(unfiltered, u, [&](const Place& at) {
+      const double of_all = at.of_i(unfiltered) - at.of_j(unfiltered);
+      const double of_u = at.of_i(u) - at.of_j(u);
+      tuning_.unfiltered += at.weight * at.shares * of_all * of_all;
+      tuning_.u_variance += at.weight * at.shares * of_u * of_u;
+    });
+  }
+
+  // The noise of a part is what differs from the filtered picture of the other parts; of all where
+  // there are two.
+  void correlate(const Parts& unfiltered, const Parts& filtered) {
     double together = 0, squares_i = 0, squares_j = 0;
-    each(unfiltered, unfiltered, [&](const Place& at) {
-      const double a = at.of_i(unfiltered), b = at.of_j(unfiltered);
-      tuning_.unfiltered += at.weight * at.shares * (a - b) * (a - b);
-      together += at.weight * (a - at.g) * (b - at.g);
-      squares_i += at.weight * (a - at.g) * (a - at.g);
-      squares_j += at.weight * (b - at.g) * (b - at.g);
+    each(unfiltered, filtered, [&](const Place& at) {
+      double truth = 0, count = 0;
+      for (std::size_t part = 0; part < parts_; ++part) {
+        if (parts_ > kFewParts && (part == at.i || part == at.j)) continue;
+        truth += double{filtered[part][at.pixel][at.c]};
+        ++count;
+      }
+      if (!std::isfinite(truth)) return;
+      const double a = at.of_i(unfiltered) - truth / count;
+      const double b = at.of_j(unfiltered) - truth / count;
+      together += at.weight * a * b;
+      squares_i += at.weight * a * a;
+      squares_j += at.weight * b * b;
     });
     const double squares = std::sqrt(squares_i * squares_j);
     tuning_.correlation = squares > 0 ? together / squares : 0;
   }
 
-  void measure(const Parts& filtered, const Parts& unfiltered, std::size_t row) {
+  void measure(const Parts& filtered, const Parts& unfiltered, const Parts& u, std::size_t row) {
     Tiles tiles(width_, height_);
     TuneRow& result = tuning_.rows[row];
     result.bias_sq = result.variance = 0;
     each(filtered, unfiltered, [&](const Place& at) {
       const double f_i = at.of_i(filtered), f_j = at.of_j(filtered);
       const double bias_sq = at.weight * (f_i - at.of_i(unfiltered)) * (f_j - at.of_j(unfiltered));
-      const double variance = at.weight * at.shares * (f_i - f_j) * (f_i - f_j);
+      const double spread = (f_i - at.of_i(u)) - (f_j - at.of_j(u));
+      const double variance = at.weight * at.shares * spread * spread;
       result.bias_sq += bias_sq;
       result.variance += variance;
       tiles.add(at.pixel, bias_sq + variance);
@@ -261,20 +241,23 @@ class Tuner {
   void choose() {
     std::vector<TuneRow>& rows = tuning_.rows;
     for (const TuneRow& row : rows) tuning_.constant = std::min(tuning_.constant, row.bias_sq);
-    for (TuneRow& row : rows) row.error = row.bias_sq + row.variance - tuning_.constant;
+    for (TuneRow& row : rows) {
+      row.error = row.bias_sq + row.variance + tuning_.u_variance - tuning_.constant;
+    }
     tuning_.unfiltered += tuning_.constant;
     for (std::size_t row = 1; row < rows.size(); ++row) {
-      if (rows[row].error < rows[tuning_.least].error) tuning_.least = row;
+      if (rows[row].error < rows[tuning_.best].error) tuning_.best = row;
     }
-    tuning_.best = tuning_.least;
+    const Tiles& best = tiles_[tuning_.best];
     for (std::size_t row = 0; row < rows.size(); ++row) {
-      if (row == tuning_.least) continue;
-      const double noise = tiles_[row].standard_error(&tiles_[tuning_.least]);
-      const double above = rows[row].error - rows[tuning_.least].error;
+      if (row == tuning_.best) continue;
+      const double noise = tiles_[row].standard_error_beyond(1, best);
+      const double above = rows[row].error - rows[tuning_.best].error;
       rows[row].distance = noise > 0 ? above / noise : 0;
-      if (rows[row].distance < kAlike && rows[row].neighbors < rows[tuning_.best].neighbors) {
-        tuning_.best = row;
-      }
+      // Without the constant sets seem to differ by more than they do, which is the safe side.
+      const double more = (1 + kTolerance) * tiles_[row].sum() - best.sum();
+      rows[row].may_be_better =
+          more < kSure * tiles_[row].standard_error_beyond(1 + kTolerance, best);
     }
   }
 
@@ -282,8 +265,8 @@ class Tuner {
   const Tune& t_;
   std::size_t width_ = 0, height_ = 0;
   std::size_t parts_ = kParts;
-  std::vector<double> shares_;    // of a part
-  std::vector<Picture> guesses_;  // g, of a pair of parts
+  std::vector<double> shares_;  // of a part
+  Picture guess_;               // g
   std::vector<Tiles> tiles_;
   std::vector<Traversal> traversals_;
   std::uint64_t done_ = 0;  // traversals

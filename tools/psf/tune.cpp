@@ -16,6 +16,7 @@
 #include "core/progress.h"
 #include "filter/parameters_text.h"
 #include "filter_options.h"
+#include "noise_report.h"
 #include "parameter_lists.h"
 #include "pass_range.h"
 #include "study/study_file.h"
@@ -63,10 +64,10 @@ std::string as_options(const filter::Parameters& parameters) {
   return text.substr(1);
 }
 
-std::size_t alike(const study::Tuning& tuning) {
+std::size_t may_be_better(const study::Tuning& tuning) {
   return static_cast<std::size_t>(
       std::count_if(tuning.rows.begin(), tuning.rows.end(),
-                    [](const study::TuneRow& row) { return row.distance < study::kAlike; }));
+                    [](const study::TuneRow& row) { return row.may_be_better; }));
 }
 
 void print(const study::Tuning& tuning, const study::Dump& dump) {
@@ -81,19 +82,17 @@ void print(const study::Tuning& tuning, const study::Dump& dump) {
   }
   const study::TuneRow& best = tuning.rows[tuning.best];
   fmt::print("{:>10.4g}  unfiltered\nchosen: {}\n", tuning.unfiltered, as_options(best.parameters));
-  const std::size_t close = alike(tuning);
-  if (close == 1) {
-    fmt::print("sure: every other set is at least {} standard errors worse\n", study::kAlike);
+  constexpr double kPercent = 100;
+  const std::size_t doubtful = may_be_better(tuning);
+  if (doubtful == 0) {
+    fmt::print("sure: its error is at most {:.0f}% above any other's, by {} standard errors\n",
+               kPercent * study::kTolerance, study::kSure);
   } else {
-    fmt::print(
-        "not sure: {} of {} sets are within {} standard errors of the least error; chosen is the "
-        "one "
-        "of them with the fewest neighbours\n",
-        close, tuning.rows.size(), study::kAlike);
+    fmt::print("not sure: its error may be more than {:.0f}% above that of {} of the {} sets\n",
+               kPercent * study::kTolerance, doubtful, tuning.rows.size());
   }
-  if (tuning.parts < 4) {
-    fmt::print("fewer than four blocks: the passes make two parts, which is less sure\n");
-  }
+  fmt::print("u's share of the noise, which no parameter reaches: {}; {:.3g} of each error\n",
+             share_text(tuning.noise), tuning.u_variance);
   if (!tuning.has_independent_paths) {
     fmt::print(
         "the passes of a {} sequence are not independent: the noise of its parts correlates by "
@@ -115,7 +114,7 @@ study::Json to_json(const study::TuneRow& row) {
           {"variance", row.variance},
           {"neighbors", row.neighbors},
           {"sigmas_above_least", row.distance},
-          {"alike", row.distance < study::kAlike}};
+          {"may_be_better", row.may_be_better}};
 }
 
 void run(const TuneOptions& options, filter::TermSet asked) {
@@ -144,19 +143,23 @@ void run(const TuneOptions& options, filter::TermSet asked) {
   if (options.common.json.empty()) return;
   study::Json rows = study::Json::array();
   for (const study::TuneRow* row : by_error(tuning)) rows.push_back(to_json(*row));
-  const study::Json json = {{"kind", "tune"},
-                            {"format", study::kStudyFormat},
-                            {"version", kVersion},
-                            {"input", study::describe_input(dump, tune.passes, tune.camera)},
-                            {"epsilon", options.epsilon},
-                            {"unfiltered", tuning.unfiltered},
-                            {"constant", tuning.constant},
-                            {"correlation", tuning.correlation},
-                            {"independent_paths", tuning.has_independent_paths},
-                            {"parts", tuning.parts},
-                            {"alike", alike(tuning)},
-                            {"best", to_json(tuning.rows[tuning.best])},
-                            {"rows", rows}};
+  const formats::CameraInfo& camera = dump.metadata().cameras[tune.camera];
+  const study::Json json = {
+      {"kind", "tune"},
+      {"format", study::kStudyFormat},
+      {"version", kVersion},
+      {"input", study::describe_input(dump, tune.passes, tune.camera)},
+      {"epsilon", options.epsilon},
+      {"unfiltered", tuning.unfiltered},
+      {"u_variance", tuning.u_variance},
+      {"noise", noise_json(std::span(&tuning.noise, 1), std::span(&camera, 1))},
+      {"constant", tuning.constant},
+      {"correlation", tuning.correlation},
+      {"independent_paths", tuning.has_independent_paths},
+      {"parts", tuning.parts},
+      {"sure", may_be_better(tuning) == 0},
+      {"best", to_json(tuning.rows[tuning.best])},
+      {"rows", rows}};
   core::write_json_file(options.common.json, json, 1);
   fmt::print("psf filter --tuned {} takes the choice\n", options.common.json);
 }

@@ -1,0 +1,18 @@
+// What stands for the reference where there is none.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace psf::study {
+
+// (height, width) of each component the median over the square of 5 x 5 pixels around, as far as it
+// lies in the picture. Of a picture without filter, nothing that a filter does is in it, and
+// neither is what a rare bright path or the rim of a lamp leaves in fewer than half of the pixels.
+// Pixels that are not finite do not count; 0 where none is.
+[[nodiscard]] std::vector<Rgb> median_around(std::span<const Rgb> picture, std::size_t width);
+
+}  // namespace psf::study
