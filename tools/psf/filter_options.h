@@ -10,6 +10,7 @@
 #include "cli.h"
 #include "filter/parameters.h"
 #include "filter/radius.h"
+#include "study/pictures.h"
 
 namespace psf::tools {
 
@@ -30,10 +31,14 @@ struct FilterOptions : ParameterOptions {
   std::string input;
   std::vector<std::string> outputs;
   std::string passes, snapshots;  // as written; empty: all, none
+  std::string layers = "all";     // of EXRs, as written
   std::string tuned;              // a file of psf tune that the parameters come from; empty: none
   bool refusals = false, follow = false;
   std::optional<std::uint64_t> max_memory;  // bytes
 };
+
+// The layers that a list, "all" or "none" names. Throws Error{usage} for an unknown name.
+[[nodiscard]] study::PictureLayers layers_of(const std::string& text);
 
 // Each declares its options, which write into `options`.
 void add_parameter_options(CLI::App& command, ParameterOptions& options);

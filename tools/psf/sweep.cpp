@@ -85,7 +85,7 @@ void run(const SweepOptions& options) {
   const core::ThreadLimit threads(options.common.threads);
   const std::vector<filter::Parameters> asked = all_sets(options.lists);
   const study::Dump dump(options.input);
-  const StudyFolder folder(options.study, dump);
+  const StudyFolder folder(options.study, dump, options.common.quiet);
   study::SweepFile file(
       folder.path(),
       {kVersion, study::describe_input(dump, folder.passes(), folder.camera()),
