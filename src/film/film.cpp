@@ -2,8 +2,12 @@
 
 #include <algorithm>
 
+#include "core/parallel.h"
+
 namespace psf::film {
 namespace {
+
+constexpr std::size_t kGrain = 16384;  // pixels
 
 void set_mean(const double* sum, std::uint64_t count, float* to) {
   for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(sum[c] / static_cast<double>(count));
@@ -32,9 +36,11 @@ struct Squares {
 
 std::vector<float> Film::mean() const {
   std::vector<float> result(sum_.size(), 0.0f);
-  for (std::size_t pixel = 0; pixel < count_.size(); ++pixel) {
-    if (has_path(pixel)) set_mean(&sum_[3 * pixel], count_[pixel], &result[3 * pixel]);
-  }
+  core::parallel_for(count_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t pixel = begin; pixel < end; ++pixel) {
+      if (has_path(pixel)) set_mean(&sum_[3 * pixel], count_[pixel], &result[3 * pixel]);
+    }
+  });
   return result;
 }
 

@@ -5,17 +5,22 @@
 
 #include "core/error.h"
 #include "core/output_file.h"
+#include "core/parallel.h"
 
 namespace psf::film {
+
+constexpr std::size_t kGrain = 16384;  // pixels
 
 void Image::add(const std::string& prefix, const std::string& suffixes,
                 std::span<const float> values) {
   assert(values.size() == width * height * suffixes.size());
   for (std::size_t k = 0; k < suffixes.size(); ++k) {
     Layer layer{prefix + suffixes[k], std::vector<float>(width * height)};
-    for (std::size_t pixel = 0; pixel < width * height; ++pixel) {
-      layer.values[pixel] = values[pixel * suffixes.size() + k];
-    }
+    core::parallel_for(width * height, kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t pixel = begin; pixel < end; ++pixel) {
+        layer.values[pixel] = values[pixel * suffixes.size() + k];
+      }
+    });
     layers.push_back(std::move(layer));
   }
 }

@@ -34,10 +34,12 @@ struct Image {
   [[nodiscard]] std::vector<Rgb> rgb(const std::string& prefix = "") const;
 };
 
-// Single-part scanline float32 EXR, ZIP compressed. Throws Error{io}. The caller names a path whose
-// folder exists; the file appears whole or not at all.
+// Single-part scanline float32 EXR, ZIP compressed on all threads: the same bytes for any number of
+// them. Throws Error{io}. The caller names a path whose folder exists; the file appears whole or
+// not at all.
 void write_exr(const std::string& path, const Image& image);
-// Reads every channel of a single-part EXR as float. Throws Error{io} or Error{bad_input}.
+// Reads every channel of an EXR as write_exr() makes them, as float. Throws what check_exr() throws
+// and Error{bad_input}. Those of other programs are read by read_picture().
 [[nodiscard]] Image read_exr(const std::string& path);
 
 // 8-bit PNG of R, G, B: times 2^exposure, the tone curve of display.h, sRGB transfer.

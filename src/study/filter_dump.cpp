@@ -39,7 +39,7 @@ class Runner {
         run_(run),
         copies_(copies),
         first_(run.passes.first),
-        channels_(dump.select(run.parameters, true)),
+        channels_(dump.select(run.parameters, run.layers.albedo || run.layers.normal)),
         reader_(dump, channels_) {}
 
   // All passes up to `last`, not included.
@@ -64,9 +64,11 @@ class Runner {
 
  private:
   void make_pictures() {
+    PictureLayers layers = run_.layers;
+    layers.albedo = layers.albedo && channels_.reflectance.has_value();
+    layers.normal = layers.normal && channels_.normal.has_value();
     for (const filter::CameraView& camera : dump_.cameras()) {
-      outcome_.pictures.emplace_back(camera, channels_.reflectance.has_value(),
-                                     channels_.normal.has_value());
+      outcome_.pictures.emplace_back(camera, layers);
       if (run_.with_noise) outcome_.noise.emplace_back(camera);
     }
   }

@@ -20,6 +20,7 @@ namespace psf::study {
 struct FilterRun {
   filter::Parameters parameters;
   PassSelection passes;  // act as a dump of their own, but that blocks of b^m stay where they are
+  PictureLayers layers;
   std::vector<std::uint64_t>
       snapshots;  // pictures after so many of the passes, ascending, each at least 1
   // All paths of the first `passes` passes, each filtered with its whole block. One entry a camera.

@@ -22,14 +22,13 @@ Rgb path_radiance(const Rgb& u, const Rgb& alpha, const Rgb& c) {
 
 }  // namespace
 
-CameraPictures::CameraPictures(const filter::CameraView& camera, bool with_albedo, bool with_normal)
+CameraPictures::CameraPictures(const filter::CameraView& camera, const PictureLayers& layers)
     : filtered_(camera.width, camera.height),
       unfiltered_(camera.width, camera.height),
       details_(camera.width, camera.height),
-      with_albedo_(with_albedo),
-      with_normal_(with_normal),
-      albedo_(with_albedo ? camera.width : 0, with_albedo ? camera.height : 0),
-      normal_(with_normal ? camera.width : 0, with_normal ? camera.height : 0) {}
+      layers_(layers),
+      albedo_(layers.albedo ? camera.width : 0, layers.albedo ? camera.height : 0),
+      normal_(layers.normal ? camera.width : 0, layers.normal ? camera.height : 0) {}
 
 bool CameraPictures::add(const filter::Records& records, const filter::Average& average,
                          std::span<const float> radius, std::size_t i) {
@@ -57,11 +56,11 @@ bool CameraPictures::add(const filter::Records& records, const filter::Average& 
 }
 
 void CameraPictures::add_guides(const filter::Records& records, std::size_t i, bool vertex) {
-  if (with_albedo_) {
+  if (layers_.albedo) {
     const Rgb albedo = vertex ? records.reflectance[i] : Rgb(0, 0, 0);
     if (is_finite(albedo)) albedo_.add(records.pixel[i], albedo);
   }
-  if (with_normal_) {
+  if (layers_.normal) {
     const Vec3 normal = vertex ? records.normal[i] : Vec3(0, 0, 0);
     if (is_finite(normal)) normal_.add(records.pixel[i], Rgb(normal.x, normal.y, normal.z));
   }
@@ -80,12 +79,14 @@ film::Image CameraPictures::image() const {
   image.width = filtered_.width();
   image.height = filtered_.height();
   image.add("", "RGB", filtered_.mean());
-  image.add("unfiltered-input.", "RGB", unfiltered());
-  const std::vector<float> details = details_.mean();
-  image.add("neighbors.", "Y", component(details, 0));
-  image.add("radius.", "Y", component(details, 1));
-  if (with_albedo_) image.add("albedo.", "RGB", albedo_.mean());
-  if (with_normal_) image.add("normal.", "XYZ", normal_.mean());
+  if (layers_.unfiltered) image.add("unfiltered-input.", "RGB", unfiltered());
+  if (layers_.neighbors || layers_.radius) {
+    const std::vector<float> details = details_.mean();
+    if (layers_.neighbors) image.add("neighbors.", "Y", component(details, 0));
+    if (layers_.radius) image.add("radius.", "Y", component(details, 1));
+  }
+  if (layers_.albedo) image.add("albedo.", "RGB", albedo_.mean());
+  if (layers_.normal) image.add("normal.", "XYZ", normal_.mean());
   return image;
 }
 

@@ -13,9 +13,15 @@
 
 namespace psf::study {
 
+// What a picture shows beside R, G, B.
+struct PictureLayers {
+  bool unfiltered = true, neighbors = true, radius = true;
+  bool albedo = true, normal = true;  // where the dump has the channels
+};
+
 class CameraPictures {
  public:
-  CameraPictures(const filter::CameraView& camera, bool with_albedo, bool with_normal);
+  CameraPictures(const filter::CameraView& camera, const PictureLayers& layers);
 
   // [pixel]: adds record i of a filtered block. A pixel's records in path order, from one thread.
   // Returns false where the radiance overflows; then the path is left out.
@@ -24,8 +30,8 @@ class CameraPictures {
 
   // R, G, B filtered; unfiltered-input.R/G/B of those of the same paths that is_input() names, a
   // pixel that has none of these filled as film::Film::filled_mean() has it; neighbors.Y and
-  // radius.Y, means over the paths with a vertex; albedo.R/G/B and normal.X/Y/Z where asked for, 0
-  // where a path has no vertex.
+  // radius.Y, means over the paths with a vertex; albedo.R/G/B and normal.X/Y/Z, 0 where a path has
+  // no vertex. Of them those that were asked for.
   [[nodiscard]] film::Image image() const;
 
   // Bytes a pixel: of the sums, and what image() and writing it take for a moment.
@@ -38,7 +44,7 @@ class CameraPictures {
 
   film::Film filtered_, unfiltered_;
   film::Film details_;  // neighbours, radius, 0
-  bool with_albedo_, with_normal_;
+  PictureLayers layers_;
   film::Film albedo_, normal_;
 };
 

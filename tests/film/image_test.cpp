@@ -3,12 +3,15 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <bit>
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <random>
 
 #include "catch.h"
 #include "core/error.h"
+#include "core/parallel.h"
 #include "film/display.h"
 #include "temp_folder.h"
 
@@ -73,6 +76,51 @@ TEST_CASE("the same picture gives the same bytes") {
     CHECK(!a.empty());
     CHECK(a == bytes_of(folder / (std::string("b.") + extension)));
   }
+}
+
+TEST_CASE("what is written on several threads is the same bytes, and other programs read it") {
+  const TempFolder folder;
+  Image image;
+  image.width = 61;
+  image.height = 1203;  // more chunks than are in memory at once, the last one not full
+  const std::size_t count = image.width * image.height;
+  std::vector<float> constant(count, 0.5f), noise(count), smooth(count);
+  std::mt19937 random(3);
+  for (std::size_t i = 0; i < count; ++i) {
+    // All bits, so that a chunk of it does not become shorter.
+    noise[i] = std::bit_cast<float>(
+        static_cast<std::uint32_t>((random() & 0x807fffffu) | ((100 + random() % 64) << 23)));
+    smooth[i] = std::sin(0.001f * static_cast<float>(i));
+  }
+  image.layers = {{"smooth.Y", smooth}, {"R", constant}, {"noise.Y", noise}};
+  std::string first;
+  for (const std::size_t threads : {1u, 2u, 5u}) {
+    const psf::core::ThreadLimit limit(threads);
+    psf::film::write_exr(folder / "a.exr", image);
+    const std::string bytes = bytes_of(folder / "a.exr");
+    if (first.empty()) first = bytes;
+    CHECK(bytes == first);
+  }
+  CHECK(first.size() < 12 * count * 9 / 10);
+  const auto input = OIIO::ImageInput::open(folder / "a.exr");
+  REQUIRE(input);
+  const OIIO::ImageSpec& spec = input->spec();
+  REQUIRE(spec.nchannels == 3);
+  std::vector<float> values(3 * count);
+  REQUIRE(input->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, values.data()));
+  for (int k = 0; k < 3; ++k) {
+    const std::vector<float>* expected = image.find(spec.channelnames[static_cast<std::size_t>(k)]);
+    REQUIRE(expected != nullptr);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      wrong += values[3 * i + static_cast<std::size_t>(k)] == (*expected)[i] ? 0u : 1u;
+    }
+    CHECK(wrong == 0);
+  }
+  // Noise alone: chunks that are stored as they are.
+  image.layers = {{"noise.Y", noise}};
+  psf::film::write_exr(folder / "b.exr", image);
+  CHECK(*psf::film::read_exr(folder / "b.exr").find("noise.Y") == noise);
 }
 
 TEST_CASE("other programs find R, G, B at the root of the EXR, row 0 on top") {

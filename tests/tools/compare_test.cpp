@@ -194,6 +194,71 @@ TEST_CASE("--layer compares a layer of the picture, with or without its dot") {
   CHECK(run(command + " --max 0").code == 1);
 }
 
+TEST_CASE("layers of other programs' pictures are found, or listed and named") {
+  const TempFolder folder;
+  const std::string a = folder / "a.exr", b = folder / "b.exr", c = folder / "c.exr";
+  const auto write = [](const std::string& path, const std::vector<std::string>& layers) {
+    psf::film::Image image;
+    image.width = 4;
+    image.height = 2;
+    float value = 1;
+    for (const std::string& layer : layers) {
+      image.add(layer, "RGB", std::vector<float>(4 * 2 * 3, value));
+      value *= 2;
+    }
+    psf::film::write_exr(path, image);
+  };
+  write(a, {"ViewLayer.Combined."});
+  write(b, {"beauty.", "diffuse."});
+  write_grey(c, 4, 2);
+  const Outcome found = run("psf compare " + a + " " + c + " --metric mse");
+  CHECK(found.code == 0);
+  CHECK(found.out.starts_with("MSE    1\n"));
+  CHECK(found.err ==
+        "note: " + a + ": has no colours at its root, its layer ViewLayer.Combined is taken\n");
+  CHECK(run("psf compare --quiet " + a + " " + c).err.empty());
+  const Outcome several = run("psf compare " + a + " " + b);
+  CHECK(several.code == 2);
+  CHECK(several.err == "psf: " + b +
+                           ": has several layers that would do; give --reference-layer one of: "
+                           "beauty, diffuse\n");
+  CHECK(run("psf compare " + a + " " + b + " --reference-layer beauty --max 0").code == 0);
+  CHECK(run("psf compare " + b + " " + c + " --layer diffuse --max 0").code == 0);
+  CHECK(run("psf compare " + b + " " + b + " --layer beauty --reference-layer diffuse --max 0")
+            .code == 1);
+  // Of the same name, unless another is given.
+  CHECK(run("psf compare " + b + " " + b + " --layer diffuse --max 0").code == 0);
+}
+
+TEST_CASE("pictures are compared where their pixels lie") {
+  const TempFolder folder;
+  const std::string a = folder / "a.exr", b = folder / "b.exr", c = folder / "c.exr";
+  const auto write = [](const std::string& path, int x) {
+    OIIO::ImageSpec spec(8, 4, 3, OIIO::TypeDesc::FLOAT);
+    spec.x = x;
+    spec.full_width = 12;
+    spec.full_height = 4;
+    const std::vector<float> values(8 * 4 * 3, 1.0f);
+    const auto output = OIIO::ImageOutput::create(path);
+    REQUIRE(output);
+    REQUIRE(output->open(path, spec));
+    REQUIRE(output->write_image(OIIO::TypeDesc::FLOAT, values.data()));
+    REQUIRE(output->close());
+  };
+  write(a, 0);
+  write(b, 4);
+  const std::string command = "psf compare " + a + " " + b + " --metric mse";
+  const Outcome apart = run(command + " --max 0");
+  CHECK(apart.code == 1);
+  // The third of each where it has no pixels is black.
+  CHECK(apart.out.starts_with("MSE    0.666667\n"));
+  CHECK(apart.err.find("note: " + a + ": has the pixels 0,0,8x4 of a picture 0,0,12x4") == 0);
+  CHECK(run(command + " --region 4,0,4x4 --max 0").code == 0);
+  CHECK(run(command + " --region 0,0,4x4 --max 0").code == 1);
+  write_grey(c, 8, 1);
+  CHECK(run("psf compare " + a + " " + c).code == 3);
+}
+
 TEST_CASE("compare tells wrong input in one line with the right code") {
   const TempFolder folder;
   const std::string a = folder / "a.exr", b = folder / "b.exr";
@@ -205,7 +270,7 @@ TEST_CASE("compare tells wrong input in one line with the right code") {
   CHECK(run("psf compare " + a + " nowhere.exr").code == 4);
   const Outcome layer = run("psf compare " + a + " " + a + " --layer albedo");
   CHECK(layer.code == 3);
-  CHECK(layer.err == "psf: " + a + ": has no channel albedo.R\n");
+  CHECK(layer.err == "psf: " + a + ": has no layer albedo; its layers: (without a name)\n");
   const std::vector<std::pair<std::string, std::string>> mistakes = {
       {"--maximum 1", "--maximum"},   {"--metric lpips", "one of relMSE"},
       {"--region 0,0,5x1", "is 4x2"}, {"--region 0,0,0x1", "is empty"},

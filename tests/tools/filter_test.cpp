@@ -39,6 +39,7 @@ class Filtered {
   }
   [[nodiscard]] psf::film::Image image() const { return psf::film::read_exr(folder_ / "out.exr"); }
   [[nodiscard]] std::vector<psf::Rgb> picture() const { return image().rgb(); }
+  [[nodiscard]] std::string bytes() const { return read_text(folder_ / "out.exr"); }
   [[nodiscard]] bool has_picture() const { return std::filesystem::exists(folder_ / "out.exr"); }
 
  private:
@@ -152,3 +153,45 @@ TEST_CASE("a block of 2^24 records is filtered within 16 GB, twice the passes in
   CHECK(seconds(":16") <= 2.1 * seconds(":8"));
 }
 #endif
+
+TEST_CASE("--layers chooses what an EXR holds beside the picture, whose pixels stay") {
+  const Filtered work;
+  work.render("a.pvb", "--size 24x16 --passes 2");
+  const auto channels = [&](const std::string& options) {
+    INFO(options);
+    REQUIRE(work.filter("a.pvb", options).code == 0);
+    std::vector<std::string> names;
+    for (const auto& layer : work.image().layers) names.push_back(layer.channel);
+    return names;
+  };
+  using Names = std::vector<std::string>;
+  const Names all = channels("");
+  const std::vector<psf::Rgb> picture = work.picture();
+  CHECK(all == Names{"B", "G", "R", "albedo.B", "albedo.G", "albedo.R", "neighbors.Y", "normal.X",
+                     "normal.Y", "normal.Z", "radius.Y", "unfiltered-input.B", "unfiltered-input.G",
+                     "unfiltered-input.R"});
+  CHECK(channels("--layers all") == all);
+  CHECK(channels("--layers none") == Names{"B", "G", "R"});
+  CHECK(work.picture() == picture);
+  CHECK(channels("--layers none --no-weights") == Names{"B", "G", "R"});
+  CHECK(channels("--layers radius,normal") ==
+        Names{"B", "G", "R", "normal.X", "normal.Y", "normal.Z", "radius.Y"});
+  CHECK(work.picture() == picture);
+  CHECK(channels("--layers neighbors,albedo,unfiltered-input").size() == 10);
+  for (const std::string wrong : {"depth", "albedo,", "\"\""}) {
+    const Outcome refused = work.filter("a.pvb", "--layers " + wrong);
+    CHECK(refused.code == 2);
+    CHECK(refused.err.find("--layers") != std::string::npos);
+  }
+}
+
+TEST_CASE("a picture is the same bytes for any number of threads") {
+  const Filtered work;
+  work.render("a.pvb", "--size 70x600 --passes 1");
+  REQUIRE(work.filter("a.pvb", "--threads 1").code == 0);
+  const std::string one = work.bytes();
+  for (const std::string threads : {"2", "5"}) {
+    REQUIRE(work.filter("a.pvb", "--threads " + threads).code == 0);
+    CHECK(work.bytes() == one);
+  }
+}

@@ -67,9 +67,22 @@ TEST_CASE("A row of a sweep is what psf filter and psf compare give") {
     CHECK(psf::tests::largest_difference(b, a) < 1e-5);
     const json figures = json::parse(read_text(work / "f.json"));
     CHECK(row.at("neighbors") == figures.at("neighbors").at("mean"));
-    const Outcome compared = run("psf compare " + work / "f.exr " + work / "reference.exr" +
-                                 " --json " + work / "c.json");
-    REQUIRE(compared.code == 0);
+    for (const bool own : {true, false}) {
+      const std::string picture =
+          own ? "out/" + row.at("picture").get<std::string>() : std::string("f.exr");
+      const Outcome compared = run("psf compare " + work / picture + " " + work / "reference.exr" +
+                                   " --json " + work / "c.json");
+      REQUIRE(compared.code == 0);
+      const json values = json::parse(read_text(work / "c.json")).at("rows").at(0).at("metrics");
+      REQUIRE(values.size() == 7);
+      for (const auto& [name, value] : values.items()) {
+        INFO(picture << " " << name);
+        // Of the row's own picture to the last bit.
+        const double expected = value.get<double>(), got = row.at("metrics").at(name);
+        if (own) CHECK(got == expected);
+        CHECK(got == Approx(expected).epsilon(1e-3));
+      }
+    }
   }
   CHECK(document.at("unfiltered").at("metrics").at("relMSE") > 0);
   const std::string csv = read_text(work / "out/sweep.csv");
@@ -116,4 +129,27 @@ TEST_CASE("A sweep says what is wrong with its lists") {
   refused("--estimator magic", "magic");
   refused("--delta 0:0.9:0.001 --r0 1px:900px:1px", "combinations");
   refused("--camera none", "front");
+}
+
+TEST_CASE("A sweep takes a layer of its reference") {
+  const Swept work;
+  const psf::film::Image reference = psf::film::read_exr(work / "reference.exr");
+  psf::film::Image layers;
+  layers.width = reference.width;
+  layers.height = reference.height;
+  for (const char* channel : {"R", "G", "B"}) {
+    const std::vector<float>& values = *reference.find(channel);
+    layers.layers.push_back({std::string("beauty.") + channel, values});
+    layers.layers.push_back(
+        {std::string("black.") + channel, std::vector<float>(values.size(), 0.0f)});
+  }
+  REQUIRE(work.sweep("--r0 2px").code == 0);
+  const json expected = work.rows()[0].at("metrics");
+  psf::film::write_exr(work / "reference.exr", layers);
+  const Outcome several = work.sweep("--r0 2px");
+  CHECK(several.code == 2);
+  CHECK(several.err.find("give --reference-layer one of: beauty, black\n") != std::string::npos);
+  std::filesystem::remove_all(work / "out");
+  REQUIRE(work.sweep("--r0 2px --reference-layer beauty").code == 0);
+  CHECK(work.rows()[0].at("metrics") == expected);
 }

@@ -16,7 +16,9 @@
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "film/image.h"
+#include "film/picture.h"
 #include "formats/error.h"
+#include "notes.h"
 #include "study/metrics/error_picture.h"
 #include "study/metrics/reference.h"
 #include "verbs.h"
@@ -26,7 +28,7 @@ namespace {
 
 struct CompareOptions {
   std::string picture, reference;
-  std::string layer;  // of the picture: prefix of its channels, "unfiltered-input"
+  std::string layer, reference_layer;  // as film::PictureRequest has them
   std::string metric = "relMSE";
   std::optional<double> max, min;
   std::vector<std::string> regions;  // "X,Y,WxH"; none: the whole picture
@@ -38,7 +40,7 @@ struct CompareOptions {
   CommonOptions common;
 };
 
-study::Region parse_region(const std::string& text, const film::Image& picture) {
+study::Region parse_region(const std::string& text, const film::Picture& picture) {
   static const std::regex form(R"((\d{1,9}),(\d{1,9}),(\d{1,9})x(\d{1,9}))");
   std::smatch parts;
   if (!std::regex_match(text, parts, form)) {
@@ -140,13 +142,14 @@ void run(const CompareOptions& options) {
   check_bounds(options, report.first);
   check_outputs(options);
 
-  const film::Image picture = film::read_exr(options.picture);
-  const film::Image reference = film::read_exr(options.reference);
-  if (picture.width != reference.width || picture.height != reference.height) {
-    throw Error(ErrorCode::bad_input,
-                fmt::format("{}: is {}x{}, but {} is {}x{}; compare pictures of one size",
-                            options.picture, picture.width, picture.height, options.reference,
-                            reference.width, reference.height));
+  const film::Picture picture = film::read_picture(options.picture, {options.layer, "", "--layer"});
+  const film::Picture reference = film::read_picture(
+      options.reference, {options.reference_layer, options.layer, "--reference-layer"});
+  const std::string note = film::check_comparable(picture, reference);
+  if (!options.common.quiet) {
+    print_notes(picture.notes);
+    print_notes(reference.notes);
+    if (!note.empty()) print_notes({note});
   }
   std::vector<study::Choice> choices;
   for (const std::string& text : options.regions) {
@@ -157,10 +160,8 @@ void run(const CompareOptions& options) {
     choices.push_back({std::nullopt, report.trim});
     report.rows.push_back({});
   }
-  const bool dotted = options.layer.empty() || options.layer.ends_with('.');
-  const std::vector<Rgb> colors = picture.rgb(options.layer + (dotted ? "" : "."));
   const study::Errors errors =
-      study::Reference(reference.rgb(), reference.width, options.settings).errors(colors);
+      study::Reference(reference.colors, reference.width, options.settings).errors(picture.colors);
   for (std::size_t k = 0; k < choices.size(); ++k) report.rows[k].values = errors.mean(choices[k]);
 
   print_values(report);
@@ -183,7 +184,10 @@ void add_compare(CLI::App& app) {
       ->required();
   command
       ->add_option("--layer", options->layer,
-                   "compare this layer of PICTURE, for example unfiltered-input")
+                   "compare this layer of PICTURE, for example unfiltered-input; the colours at "
+                   "the root, or the only ones there are, unless given")
+      ->type_name("NAME");
+  command->add_option("--reference-layer", options->reference_layer, "the same of REFERENCE")
       ->type_name("NAME");
   command
       ->add_option("--metric", options->metric,

@@ -87,7 +87,7 @@ void refuse_to_overwrite(const std::string& folder) {
 void run_dumps(const ConvergeOptions& options, filter::TermSet asked) {
   std::vector<filter::Parameters> sets = all_sets(options.lists);
   const study::Dump dump(options.inputs.front());
-  const StudyFolder folder(options.study, dump);
+  const StudyFolder folder(options.study, dump, options.common.quiet);
   refuse_to_overwrite(folder.path());
   if (folder.passes().first != 0) {
     throw Error(ErrorCode::usage, "--passes: a convergence study begins with the first pass");

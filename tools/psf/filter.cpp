@@ -166,6 +166,20 @@ void wait_for_first_pass(const std::string& path) {
   }
 }
 
+// Layers that were asked for by name and that the dump has no channel for.
+void check_layers(const study::Dump& dump, const std::string& text,
+                  const study::PictureLayers& layers) {
+  const auto need = [&](const char* layer, const char* channel) {
+    if (dump.reader().head().find(channel)) return;
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: has no channel {}, which --layers {} needs; leave it out",
+                            dump.reader().path(), channel, layer));
+  };
+  if (text == "all") return;
+  if (layers.albedo) need("albedo", "reflectance");
+  if (layers.normal) need("normal", "normal");
+}
+
 void run(const FilterOptions& options, filter::TermSet asked) {
   const auto start = Clock::now();
   keep_freed_memory();
@@ -178,11 +192,13 @@ void run(const FilterOptions& options, filter::TermSet asked) {
   }
   run.parameters = parameters_of(chosen);
   run.passes = parse_passes(options.passes);
+  run.layers = layers_of(options.layers);
   run.max_memory = options.max_memory;
   run.with_noise = !options.common.json.empty();
   if (options.follow) wait_for_first_pass(options.input);
   study::Dump dump(options.input);
   fit_terms(dump, {&run.parameters, 1}, asked, options.common.quiet);
+  check_layers(dump, options.layers, run.layers);
   const std::uint64_t last = run.passes.last.value_or(dump.pass_bounds().size() - 1);
   run.snapshots =
       snapshots_of(options.snapshots, last > run.passes.first ? last - run.passes.first : 0);

@@ -4,8 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string>
+#include <string_view>
+#include <utility>
 
+#include "core/error.h"
 #include "filter/parameters_text.h"
 #include "pass_range.h"
 #include "study/missing_terms.h"
@@ -114,6 +118,33 @@ std::vector<std::uint64_t> snapshots_of(const std::string& text, std::uint64_t p
   return list;
 }
 
+study::PictureLayers layers_of(const std::string& text) {
+  if (text == "all") return {};
+  study::PictureLayers layers = {false, false, false, false, false};
+  if (text == "none") return layers;
+  const std::pair<std::string_view, bool*> names[] = {{"unfiltered-input", &layers.unfiltered},
+                                                      {"neighbors", &layers.neighbors},
+                                                      {"radius", &layers.radius},
+                                                      {"albedo", &layers.albedo},
+                                                      {"normal", &layers.normal}};
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    const std::string one = text.substr(begin, comma - begin);
+    const auto* const found = std::find_if(std::begin(names), std::end(names),
+                                           [&](const auto& name) { return name.first == one; });
+    if (found == std::end(names)) {
+      throw Error(
+          ErrorCode::usage,
+          "--layers: no layer \"" + one +
+              "\"; write all, none, or some of unfiltered-input, neighbors, radius, albedo, "
+              "normal, with commas between");
+    }
+    *found->second = true;
+    begin = comma + 1;
+  }
+  return layers;
+}
+
 void add_parameter_options(CLI::App& command, ParameterOptions& options) {
   command.add_option("--r0", options.r0, "radius: 8px, 0.02 of the distance, 0.5wu (default 8px)")
       ->type_name("R");
@@ -160,10 +191,16 @@ void add_filter_options(CLI::App& command, FilterOptions& options) {
   command.add_option("IN", options.input, "path-vertex buffer")->required()->type_name("FILE.pvb");
   command
       .add_option("-o,--output", options.outputs,
-                  "picture, .exr with all layers or .png; may be repeated")
+                  "picture, .exr with layers or .png; may be repeated")
       ->required()
       ->type_name("FILE")
       ->allow_extra_args(false);
+  command
+      .add_option("--layers", options.layers,
+                  "of an .exr beside the picture: all, none, or some of unfiltered-input, "
+                  "neighbors, radius, albedo, normal")
+      ->type_name("NAME,NAME,...")
+      ->capture_default_str();
   const std::size_t before = command.get_options().size();
   add_parameter_options(command, options);
   const std::vector<CLI::Option*> all = command.get_options();

@@ -13,6 +13,7 @@
 #include "filter/radius.h"
 #include "filter/weights.h"
 #include "study/dump.h"
+#include "study/pictures.h"
 
 namespace psf::tools {
 
@@ -33,6 +34,7 @@ struct FilterOptions : ParameterOptions {
   std::string input;
   std::vector<std::string> outputs;
   std::string passes, snapshots;  // as written; empty: all, none
+  std::string layers = "all";     // of EXRs, as written
   std::string tuned;              // a file of psf tune that the parameters come from; empty: none
   bool refusals = false, follow = false;
   std::optional<std::uint64_t> max_memory;  // bytes
@@ -43,6 +45,8 @@ struct FilterOptions : ParameterOptions {
 // Switches off, in all sets, what the dump cannot serve and nobody asked for, with a note.
 void fit_terms(const study::Dump& dump, std::span<filter::Parameters> sets, filter::TermSet asked,
                bool quiet);
+// The layers that a list, "all" or "none" names. Throws Error{usage} for an unknown name.
+[[nodiscard]] study::PictureLayers layers_of(const std::string& text);
 
 // Each declares its options, which write into `options`.
 void add_parameter_options(CLI::App& command, ParameterOptions& options);

@@ -8,8 +8,10 @@
 #include "cli.h"
 #include "core/apart.h"
 #include "film/image.h"
+#include "film/picture.h"
 #include "filter/parameters_text.h"
 #include "formats/error.h"
+#include "notes.h"
 #include "pass_range.h"
 #include "version.h"
 
@@ -19,6 +21,11 @@ void add_study_options(CLI::App& command, StudyOptions& options, bool required) 
   command.add_option("--reference", options.reference, "what is right: an EXR of the same size")
       ->required(required)
       ->type_name("FILE.exr");
+  command
+      .add_option("--reference-layer,--layer", options.reference_layer,
+                  "layer of the reference; the colours at its root, or the only ones there are, "
+                  "unless given")
+      ->type_name("NAME");
   command.add_option("-o,--output", options.folder, "folder for the results; made where missing")
       ->required()
       ->type_name("DIR");
@@ -52,13 +59,14 @@ std::size_t find_camera(const study::Dump& dump, const std::string& name) {
                           fmt::join(names, ", ")));
 }
 
-StudyFolder::StudyFolder(const StudyOptions& options, const study::Dump& dump)
+StudyFolder::StudyFolder(const StudyOptions& options, const study::Dump& dump, bool quiet)
     : options_(options),
       passes_(parse_passes(options.passes)),
       metric_(study::parse_metric(options.metric)),
       camera_(find_camera(dump, options.camera)) {
   options_.metrics.validate();
-  const film::Image image = film::read_exr(options_.reference);
+  film::Picture image =
+      film::read_picture(options_.reference, {options_.reference_layer, "", "--reference-layer"});
   const filter::CameraView& view = dump.cameras()[camera_];
   if (image.width != view.width || image.height != view.height) {
     throw Error(ErrorCode::bad_input,
@@ -67,7 +75,18 @@ StudyFolder::StudyFolder(const StudyOptions& options, const study::Dump& dump)
                             options_.reference, image.width, image.height, dump.reader().path(),
                             view.width, view.height));
   }
-  reference_ = image.rgb();
+  film::Picture camera;
+  camera.width = image.width;
+  camera.height = image.height;
+  camera.left = image.left;
+  camera.top = image.top;
+  camera.path = dump.reader().path();
+  const std::string note = film::check_comparable(image, camera);
+  if (!quiet) {
+    print_notes(image.notes);
+    if (!note.empty()) print_notes({note});
+  }
+  reference_ = std::move(image.colors);
   width_ = image.width;
   height_ = image.height;
 }

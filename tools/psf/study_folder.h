@@ -18,7 +18,7 @@
 namespace psf::tools {
 
 struct StudyOptions {
-  std::string reference, folder, passes, camera;
+  std::string reference, reference_layer, folder, passes, camera;
   std::string metric = "relMSE";  // orders what is printed
   study::MetricOptions metrics;
   bool pictures = false;
@@ -30,9 +30,10 @@ void add_study_options(CLI::App& command, StudyOptions& options, bool required);
 
 class StudyFolder {
  public:
-  // Reads the reference. Throws Error{usage} for a camera that is not there or
-  // not named though there are several, Error{bad_input} where the reference has another size.
-  StudyFolder(const StudyOptions& options, const study::Dump& dump);
+  // Reads the reference, tells its notes unless `quiet`, and makes the folder. Throws Error{usage}
+  // for a camera that is not there or not named though there are several, Error{bad_input} where
+  // the reference has another size.
+  StudyFolder(const StudyOptions& options, const study::Dump& dump, bool quiet);
 
   // The names, in the folder, are apart from the inputs and from --json (check_files()); then it is
   // made where it is missing.

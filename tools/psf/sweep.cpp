@@ -88,7 +88,7 @@ void run(const SweepOptions& options, filter::TermSet terms) {
   std::vector<filter::Parameters> asked = all_sets(options.lists);
   const study::Dump dump(options.input);
   fit_terms(dump, asked, terms, options.common.quiet);
-  const StudyFolder folder(options.study, dump);
+  const StudyFolder folder(options.study, dump, options.common.quiet);
   study::SweepFile file(
       folder.path(),
       {kVersion, study::describe_input(dump, folder.passes(), folder.camera()),

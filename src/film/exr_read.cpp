@@ -1,16 +1,16 @@
-// EXR through OpenEXR: single-part, scanline, float32.
+// Every channel of an EXR of ours.
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfInputFile.h>
-#include <ImfOutputFile.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
 #include <ImfStringAttribute.h>
 
 #include <exception>
-#include <filesystem>
+#include <new>
 
 #include "core/error.h"
-#include "core/output_file.h"
+#include "film/exr_check.h"
 #include "film/image.h"
 
 namespace psf::film {
@@ -24,34 +24,12 @@ Imf::Slice slice(const std::vector<float>& values, std::size_t width) {
 
 }  // namespace
 
-void write_exr(const std::string& path, const Image& image) {
-  core::OutputFile file(path);
-  try {
-    Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
-    header.compression() = Imf::ZIP_COMPRESSION;
-    for (const auto& [name, value] : image.attributes) {
-      header.insert(name, Imf::StringAttribute(value));
-    }
-    Imf::FrameBuffer buffer;
-    for (const Layer& layer : image.layers) {
-      header.channels().insert(layer.channel, Imf::Channel(Imf::FLOAT));
-      buffer.insert(layer.channel, slice(layer.values, image.width));
-    }
-    Imf::OutputFile output(file.temporary_path().c_str(), header);
-    output.setFrameBuffer(buffer);
-    output.writePixels(static_cast<int>(image.height));
-  } catch (const std::exception& error) {
-    throw Error(ErrorCode::io, path + ": cannot write the picture: " + error.what());
-  }
-  file.commit();
-}
-
 Image read_exr(const std::string& path) {
-  if (!std::filesystem::exists(path)) {
-    throw Error(ErrorCode::io, path + ": no such file");
-  }
   try {
-    Imf::InputFile input(path.c_str());
+    check_exr(path);
+    // Not the table of chunks: see picture.cpp.
+    Imf::MultiPartInputFile file(path.c_str(), 0, false);
+    Imf::InputPart input(file, 0);
     const Imath::Box2i window = input.header().dataWindow();
     Image image;
     image.path = path;
@@ -79,8 +57,13 @@ Image read_exr(const std::string& path) {
       }
     }
     return image;
+  } catch (const Error& error) {
+    throw Error(error.code(), one_line(error.what()));
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
-    throw Error(ErrorCode::bad_input, path + ": no readable EXR picture: " + error.what());
+    throw Error(ErrorCode::bad_input,
+                path + ": no readable EXR picture: " + one_line(error.what()));
   }
 }
 

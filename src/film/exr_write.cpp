@@ -1,0 +1,165 @@
+// EXR through OpenEXR's core library: single-part, scanline, float32. ISA-L compresses the chunks,
+// several at once.
+#include <fcntl.h>
+#include <openexr.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "core/error.h"
+#include "core/output_file.h"
+#include "core/parallel.h"
+#include "film/exr_zip.h"
+#include "film/image.h"
+
+namespace psf::film {
+namespace {
+
+constexpr std::size_t kLines = 16;  // of a chunk, by the format for ZIP
+constexpr std::size_t kBatch = 32;  // chunks that are in memory at once
+
+// A file that OpenEXR writes through, so that what the system says of a failure is not lost.
+class File {
+ public:
+  explicit File(const std::string& path)
+      : descriptor_(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+    if (descriptor_ < 0) error_ = errno;
+  }
+  ~File() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  // What OpenEXR calls; -1 where not all bytes were written.
+  static std::int64_t write(exr_const_context_t, void* self, const void* bytes, std::uint64_t size,
+                            std::uint64_t offset, exr_stream_error_func_ptr_t) {
+    return static_cast<File*>(self)->write(static_cast<const char*>(bytes), size, offset);
+  }
+  void close() {
+    if (descriptor_ >= 0 && ::close(descriptor_) != 0) error_ = errno;
+    descriptor_ = -1;
+  }
+  [[nodiscard]] int error() const { return error_; }
+
+ private:
+  std::int64_t write(const char* bytes, std::uint64_t size, std::uint64_t offset) {
+    for (std::uint64_t done = 0; done < size;) {
+      const ssize_t now =
+          pwrite(descriptor_, bytes + done, size - done, static_cast<off_t>(offset + done));
+      if (now < 0 && errno == EINTR) continue;
+      if (now <= 0) {
+        error_ = now < 0 ? errno : EIO;
+        return -1;
+      }
+      done += static_cast<std::uint64_t>(now);
+    }
+    return static_cast<std::int64_t>(size);
+  }
+
+  int descriptor_;
+  int error_ = 0;
+};
+
+class Writer {
+ public:
+  Writer(const std::string& path, const std::string& temporary) : path_(path), file_(temporary) {
+    exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    settings.user_data = &file_;
+    settings.write_fn = File::write;
+    // Otherwise it prints them.
+    settings.error_handler_fn = [](exr_const_context_t, exr_result_t, const char*) {};
+    if (file_.error() != 0) fail(EXR_ERR_WRITE_IO);
+    check(exr_start_write(&context_, path.c_str(), EXR_WRITE_FILE_DIRECTLY, &settings));
+  }
+  ~Writer() {
+    if (context_ != nullptr) exr_finish(&context_);
+  }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  void write_header(const Image& image) {
+    check(exr_add_part(context_, "", EXR_STORAGE_SCANLINE, &part_));
+    check(exr_initialize_required_attr_simple(
+        context_, part_, static_cast<std::int32_t>(image.width),
+        static_cast<std::int32_t>(image.height), EXR_COMPRESSION_ZIP));
+    for (const Layer& layer : image.layers) {
+      check(exr_add_channel(context_, part_, layer.channel.c_str(), EXR_PIXEL_FLOAT,
+                            EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
+    }
+    for (const auto& [name, value] : image.attributes) {
+      check(exr_attr_set_string(context_, part_, name.c_str(), value.c_str()));
+    }
+    check(exr_write_header(context_));
+  }
+  void write_chunk(std::size_t line, const std::vector<std::uint8_t>& bytes) {
+    check(exr_write_scanline_chunk(context_, part_, static_cast<int>(line), bytes.data(),
+                                   bytes.size()));
+  }
+  void finish() {
+    check(exr_finish(&context_));
+    file_.close();
+    if (file_.error() != 0) fail(EXR_ERR_WRITE_IO);
+  }
+
+ private:
+  void check(exr_result_t result) const {
+    if (result != EXR_ERR_SUCCESS) fail(result);
+  }
+  [[noreturn]] void fail(exr_result_t result) const {
+    throw Error(ErrorCode::io, path_ + ": cannot write the picture: " +
+                                   (file_.error() != 0 ? std::strerror(file_.error())
+                                                       : exr_get_default_error_message(result)));
+  }
+
+  std::string path_;
+  File file_;
+  exr_context_t context_ = nullptr;
+  int part_ = 0;
+};
+
+// The lines [first, last) as the format has them: of each line all channels in the order of their
+// names.
+std::vector<std::uint8_t> packed(const Image& image, std::span<const Layer* const> layers,
+                                 std::size_t first, std::size_t last) {
+  const std::size_t row = image.width * sizeof(float);
+  std::vector<std::uint8_t> bytes((last - first) * layers.size() * row);
+  std::uint8_t* to = bytes.data();
+  for (std::size_t y = first; y < last; ++y) {
+    for (const Layer* layer : layers) {
+      std::memcpy(to, layer->values.data() + y * image.width, row);
+      to += row;
+    }
+  }
+  return bytes;
+}
+
+}  // namespace
+
+void write_exr(const std::string& path, const Image& image) {
+  std::vector<const Layer*> layers;
+  for (const Layer& layer : image.layers) layers.push_back(&layer);
+  std::sort(layers.begin(), layers.end(),
+            [](const Layer* a, const Layer* b) { return a->channel < b->channel; });
+  core::OutputFile file(path);
+  Writer writer(path, file.temporary_path());
+  writer.write_header(image);
+  const std::size_t chunks = core::range_count(image.height, kLines);
+  std::vector<std::vector<std::uint8_t>> done(std::min(chunks, kBatch));
+  for (std::size_t begin = 0; begin < chunks; begin += kBatch) {
+    const std::size_t count = std::min(kBatch, chunks - begin);
+    core::parallel_for(count, 1, [&](std::size_t k, std::size_t) {
+      const std::size_t first = (begin + k) * kLines;
+      done[k] = exr_zip(packed(image, layers, first, std::min(image.height, first + kLines)));
+    });
+    for (std::size_t k = 0; k < count; ++k) writer.write_chunk((begin + k) * kLines, done[k]);
+  }
+  writer.finish();
+  file.commit();
+}
+
+}  // namespace psf::film
