@@ -45,8 +45,11 @@ void WeightTerms::switch_off(std::size_t term) {
       return plane.reset();
     case 5:
       return direction.reset();
-    default:
+    case 6:
       material = false;
+      return;
+    default:
+      gloss.reset();
   }
 }
 

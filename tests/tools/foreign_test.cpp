@@ -108,9 +108,10 @@ TEST_CASE("Terms that are on by default and whose channel is missing are off, wi
     INFO(outcome.err);
     CHECK(outcome.code == 0);
     CHECK(count(outcome.err, "note:") == 1);
-    CHECK(outcome.err.find("note: " + folder / "a.pvb" +
-                           ": has no channel normal, reflectance, visibility, so --normal, "
-                           "--reflectance, --visibility are off\n") != std::string::npos);
+    CHECK(outcome.err.find(
+              "note: " + folder / "a.pvb" +
+              ": has no channel normal, reflectance, visibility, direction, roughness, so "
+              "--normal, --reflectance, --visibility, --gloss are off\n") != std::string::npos);
   }
 }
 
@@ -119,16 +120,18 @@ TEST_CASE("What is there stays on, and a note names the rest alone") {
   write(folder / "a.pvb", 1, {"normal", "visibility"});
   const Outcome outcome = run("psf filter " + folder / "a.pvb" + " -o " + folder / "out.exr");
   CHECK(outcome.code == 0);
-  CHECK(outcome.err.find("has no channel reflectance, so --reflectance is off\n") !=
-        std::string::npos);
+  CHECK(outcome.err.find(
+            "has no channel reflectance, direction, roughness, so --reflectance, --gloss "
+            "are off\n") != std::string::npos);
   CHECK(outcome.out.find("weights    normal 0.95, visibility\n") != std::string::npos);
   CHECK(run("psf filter " + folder / "a.pvb" + " --quiet -o " + folder / "out.exr").err.empty());
 }
 
 TEST_CASE("A term that was asked for is an error that names its channel") {
   for (const char* verb : kVerbs) {
-    for (const char* term : {"--normal=0.95", "--reflectance=0.05", "--visibility=on",
-                             "--plane=0.5", "--material=on", "--no-weights --direction=0.9"}) {
+    for (const char* term :
+         {"--normal=0.95", "--reflectance=0.05", "--visibility=on", "--plane=0.5", "--material=on",
+          "--no-weights --direction=0.9", "--gloss=0.8"}) {
       const TempFolder folder;
       write(folder / "a.pvb", 1);
       write_reference(folder);
