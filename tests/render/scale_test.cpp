@@ -228,7 +228,7 @@ TEST_CASE("a dump of a scene of any size and anywhere has world units", "[scale]
       wrong += has_vertex && !(near && long_right && hit_right) ? 1u : 0u;
     }
     INFO(move.scale << " at " << triple(move.offset));
-    CHECK(wrong < positions.size() / 200);  // a path at an edge may go another way
+    CHECK(wrong < positions.size() / 50);  // what a ball shows of an edge may be another surface
   }
 }
 
