@@ -11,6 +11,7 @@
 #include <fstream>
 
 #include "core/error.h"
+#include "core/temporary_name.h"
 
 namespace psf::core {
 namespace fs = std::filesystem;
@@ -20,17 +21,17 @@ namespace {
   throw Error(ErrorCode::io, path + ": " + why);
 }
 
-// Of a temporary in `folder` for the file `name`: hidden, with its extension, the stem cut where
-// the whole would be too long.
-std::string temporary_name(const fs::path& folder, const fs::path& name) {
-  const std::string end = "." + std::to_string(getpid()) + ".partial" + name.extension().string();
+}  // namespace
+
+std::string temporary_name(const std::string& path) {
+  const fs::path target(path);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const std::string end = "." + std::to_string(getpid()) + ".partial" + target.extension().string();
   const long limit = ::pathconf(folder.c_str(), _PC_NAME_MAX);
   const auto most = static_cast<std::size_t>(limit > 0 ? limit : NAME_MAX);
   const std::size_t room = most - std::min(most, end.size() + 1);
-  return "." + name.stem().string().substr(0, room) + end;
+  return (folder / ("." + target.stem().string().substr(0, room) + end)).string();
 }
-
-}  // namespace
 
 std::string followed(const std::string& path) {
   constexpr int kMostLinks = 40;  // as Linux has it
@@ -71,7 +72,7 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
   if (target.filename().string().size() > static_cast<std::size_t>(NAME_MAX)) {
     refuse(path, std::string("cannot write: ") + std::strerror(ENAMETOOLONG));
   }
-  temporary_ = (folder / temporary_name(folder, target.filename())).string();
+  temporary_ = temporary_name(target_);
   unfinished_.emplace(temporary_);
   if (!std::ofstream(temporary_, std::ios::binary)) {
     refuse(path, std::string("cannot write here: ") + std::strerror(errno));

@@ -40,8 +40,8 @@ TEST_CASE("every name of a file is known for it") {
   fs::create_symlink("../a", folder / "sub/up");
   fs::create_hard_link(folder / "a", folder / "hard");
   fs::create_symlink("missing", folder / "dangling");
-  const Names same = {"a",          "./a",           "sub/../a", "sub/deep/../../a", "link",
-                      "sub/up",     "hard",          "//a",      "link-to-link",     "sub/./up",
+  const Names same = {"a",          "./a",           "sub/../a",  "sub/deep/../../a", "link",
+                      "sub/up",     "hard",          "sub//../a", "link-to-link",     "sub/./up",
                       "./././hard", "folder-link/up"};
   for (const std::string& name : same) {
     INFO(name);

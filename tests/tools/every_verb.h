@@ -25,7 +25,7 @@ class VerbInputs {
       "shapes": [{"shape": "sphere", "center": [0, 1, 0], "radius": 1, "material": "grey"}]})";
     make("psf-render IN/room.json -o IN/a.pvb --passes 4 --quiet --json IN/a.json");
     make("psf filter IN/a.pvb -o IN/a.exr");
-    make("psf tune IN/a.pvb --r0 4px,8px --json IN/tuned.json");
+    make("psf tune IN/a.pvb --r0 4px,8px --block 1pass --json IN/tuned.json");
     make("psf sweep IN/a.pvb --reference IN/a.exr --r0 4px -o IN/sweep --pictures");
     empty();
   }
@@ -88,7 +88,7 @@ inline const std::vector<std::string>& every_verb() {
       "OUT/s.json",
       "psf converge IN/a.pvb --reference IN/a.exr --r0 4px,8px --pictures -o OUT/converge --json "
       "OUT/g.json",
-      "psf tune IN/a.pvb --r0 4px,8px --json OUT/t.json",
+      "psf tune IN/a.pvb --r0 4px,8px --block 1pass --json OUT/t.json",
       "psf explain IN/a.pvb --pixel 8,6 --json OUT/x.json --ply OUT/x.ply",
       "psf report IN/sweep -o OUT/r.html --json OUT/h.json"};
   return verbs;

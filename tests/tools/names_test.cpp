@@ -192,7 +192,7 @@ TEST_CASE("names that are no UTF-8, have spaces, backslashes or newlines are nam
                 quoted(".sweep"));
     writes_json("psf converge " + dump + " --reference " + picture + " --r0 4px -o " +
                 quoted(".converge"));
-    writes_json("psf tune " + dump + " --r0 4px,8px");
+    writes_json("psf tune " + dump + " --r0 4px,8px --block 1pass");
     writes_json("psf explain " + dump + " --pixel 8,6 --ply " + quoted(".x.ply"));
     writes_json("psf report " + quoted(".sweep") + " " + quoted(".converge") + " -o " +
                 quoted(".html"));

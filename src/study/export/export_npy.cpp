@@ -1,15 +1,17 @@
 // A folder of numpy arrays. The layout of .npy: NEP 1, "A Simple File Format for NumPy Arrays".
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
+#include <deque>
 #include <filesystem>
 #include <set>
 #include <utility>
 
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/temporary_name.h"
+#include "core/unfinished.h"
 #include "study/export/export.h"
 #include "study/export/export_file.h"
 
@@ -83,7 +85,8 @@ class OutputFolder {
     if (!fs::is_directory(parent)) {
       fail(fmt::format("the folder {} does not exist, create it first", parent.string()));
     }
-    temporary_ = parent / fmt::format(".{}.{}.partial", target.filename().string(), ::getpid());
+    temporary_ = core::temporary_name(path_);
+    unfinished_.emplace_back(temporary_.string());
     fs::create_directory(temporary_, error);
     if (error) fail("cannot create: " + error.message());
   }
@@ -94,8 +97,10 @@ class OutputFolder {
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  [[nodiscard]] std::string temporary(const std::string& name) const {
-    return (temporary_ / name).string();
+  [[nodiscard]] std::string temporary(const std::string& name) {
+    const std::string path = (temporary_ / name).string();
+    unfinished_.emplace_back(path);
+    return path;
   }
   [[nodiscard]] std::string shown(const std::string& name) const { return path_ + "/" + name; }
   void commit() {
@@ -103,6 +108,7 @@ class OutputFolder {
     fs::rename(temporary_, path_, error);
     if (error) fail("cannot put the finished folder in place: " + error.message());
     temporary_.clear();
+    for (core::Unfinished& part : unfinished_) part.keep();
   }
 
  private:
@@ -112,6 +118,7 @@ class OutputFolder {
 
   std::string path_;
   fs::path temporary_;
+  std::deque<core::Unfinished> unfinished_;  // the folder and what is in it
 };
 
 }  // namespace
