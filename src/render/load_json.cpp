@@ -51,12 +51,13 @@ Environment read_environment(const JsonCursor& json, JsonLoad& load) {
 }
 
 // The direction in which a light travels: "direction", or from its position to "target".
-Vec3 read_direction(const JsonCursor& json, const Vec3& position, const Space& space) {
+Vec3 read_direction(const JsonCursor& json, const Imath::V3d& position, const Space& space) {
   const auto target = json.find("target");
   if (!target) return json.at("direction").direction();
   if (json.find("direction"))
     json.fail("has both \"direction\" and \"target\", one of them is enough");
-  const Vec3 direction = space.local(target->vec3d()) - position;
+  const Imath::V3d at = target->vec3d();
+  const Vec3 direction = space.exact ? Vec3(at - position) : Vec3(at) - Vec3(position);
   if (!(direction.length() > 0)) target->fail("the target is where the light is");
   return direction.normalized();
 }
@@ -83,7 +84,7 @@ Light read_light(const JsonCursor& json, const Space& space) {
       json.check_keys(
           {"name", "kind", "position", "direction", "target", "intensity", "inner", "outer"});
       light.position = space.local(json.at("position").vec3d());
-      light.direction = read_direction(json, light.position, space);
+      light.direction = read_direction(json, json.at("position").vec3d(), space);
       light.intensity = json.at("intensity").rgb(kNonNegative);
       const float outer = json.at("outer").number({0.01, 90, "of degrees in (0, 90]"});
       const auto inner = json.find("inner");

@@ -14,8 +14,9 @@ namespace {
 // A scene as far from the origin as this many times its size is moved: farther, its coordinates
 // lose more than 6 of their 24 bits.
 constexpr double kFar = 64;
-// Sizes, as exponents of two, at which squares of areas are floats with room on both sides.
-constexpr int kSmall = -10, kLarge = 20, kMiddle = 4;
+// Sizes, as exponents of two, at which products of lengths are floats with room on both sides; most
+// of the room is below, for what is small in a large scene.
+constexpr int kSmall = -10, kLarge = 20, kMiddle = 10;
 // World units that a dump's floats have: distances between parts of a scene, sums of them.
 constexpr double kLargestWorld = 1e36, kSmallestWorld = 1e-30;
 // Doubles, as in the files, have 53 bits: so many times its size from the origin, a scene keeps 13.
@@ -23,6 +24,16 @@ constexpr double kFarthest = 0x1p40;
 
 // A shape, or the positions of a dump, of fewer steps of a float have lost their form.
 constexpr double kStepsOfShape = 64, kStepsOfDump = 4096;
+
+// In the scene's space; its square, times a distance as small, is a float with all digits.
+constexpr double kLeastShape = 0x1p-32;
+
+// That a warning is about.
+struct OddShapes {
+  const char* what;
+  std::size_t count = 0;
+  std::string first = {};
+};
 
 // Between floats of this size.
 double float_step(double size) {
@@ -103,7 +114,7 @@ Space fitting_space(const std::string& path, const Scene& scene) {
   const double half = largest(box.size()) / 2;
   const int size = half > 0 ? std::ilogb(half) : kMiddle;
   if (size < kSmall || size > kLarge) {
-    space.exponent += size - kMiddle;
+    space.exponent += size - (size > kLarge ? kLarge : kMiddle);
     space.exact = true;
     return space;
   }
@@ -132,14 +143,15 @@ void note_lost_digits(const std::string& path, Scene& scene) {
         "the scene is {:.3g} across; pictures lose nothing",
         path, world.reach, world.step, world.across));
   }
-  std::size_t small = 0;
-  std::string first;
+  OddShapes small{"smaller than 64 steps of a float where it is, so that its form is lost"};
+  OddShapes tiny{"so small beside the scene that it may not be seen"};
   const auto check = [&](const char* kind, const std::string& name, double across, double reach) {
-    if (across >= kStepsOfShape * float_step(reach)) return;
-    if (small++ == 0) {
-      first = fmt::format("{} {}, {:.3g} across, {:.3g} from the middle", kind, name,
-                          std::ldexp(across, scene.space.exponent),
-                          std::ldexp(reach, scene.space.exponent));
+    for (OddShapes* which : {across < kStepsOfShape * float_step(reach) ? &small : nullptr,
+                             across < kLeastShape ? &tiny : nullptr}) {
+      if (which == nullptr || which->count++ > 0) continue;
+      which->first = fmt::format("{} {}, {:.3g} across, {:.3g} from the middle", kind, name,
+                                 std::ldexp(across, scene.space.exponent),
+                                 std::ldexp(reach, scene.space.exponent));
     }
   };
   for (const Mesh& mesh : scene.meshes) {
@@ -150,11 +162,11 @@ void note_lost_digits(const std::string& path, Scene& scene) {
   for (const Sphere& sphere : scene.spheres) {
     check("sphere", sphere.name, 2 * double{sphere.radius}, largest(Imath::V3d(sphere.center)));
   }
-  if (small > 0) {
-    scene.warnings.push_back(fmt::format(
-        "{}: {} shapes lose their form: they are smaller than {} steps of a float where "
-        "they are (the first is {})",
-        path, small, kStepsOfShape, first));
+  for (const OddShapes* which : {&small, &tiny}) {
+    if (which->count == 0) continue;
+    const std::string others =
+        which->count == 1 ? "" : fmt::format(", and {} more", which->count - 1);
+    scene.warnings.push_back(fmt::format("{}: {}: {}{}", path, which->what, which->first, others));
   }
 }
 
@@ -165,7 +177,14 @@ Scene load_fitting(const std::string& path, const std::function<void(Scene&)>& l
   for (int tries = 1;; ++tries) {
     Scene scene;
     scene.space = space;
-    load(scene);
+    try {
+      load(scene);
+    } catch (const Error&) {
+      // Far from the origin what is wrong may be the rounding to float.
+      if (space.exact) throw;
+      space.exact = true;
+      continue;
+    }
     space = fitting_space(path, scene);
     if (space == scene.space || tries == kMostTries) return scene;
   }

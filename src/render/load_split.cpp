@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "formats/error.h"
 #include "render/load_parts.h"
@@ -17,8 +18,9 @@ using Imath::V3d;
 // one that is longer than so many times its distance from the camera, to 1% of that distance.
 constexpr double kTooLong = 4096;
 constexpr int kMostCuts = 64;  // of one triangle within another
-// A sphere of so many times the camera's distance from it has no surface to the camera.
-constexpr double kTooRound = 0x1p14;
+// Of a sphere's surface, floats know some 2^-18 of its radius: of one that is so many times a
+// camera's distance from it, 3% of that distance.
+constexpr double kTooRound = 0x1p13;
 
 double distance_to_segment(const V3d& p, const V3d& a, const V3d& b) {
   const V3d along = b - a;
@@ -127,7 +129,7 @@ std::vector<Eye> near_eyes(const Mesh& mesh, const std::vector<Camera>& cameras)
       const double distance = distance_to_triangle(place, a, b, c);
       if (distance * kTooLong < reach) {
         // A camera in the triangle itself: what floats tell apart there.
-        nearest = std::min(nearest, std::max(distance, reach * 0x1p-40));
+        nearest = std::min(nearest, std::max(distance, reach * 0x1p-56));
       }
     }
     if (std::isfinite(nearest)) eyes.push_back({place, nearest});
@@ -145,17 +147,17 @@ void split_large_triangles(Scene& scene) {
 }
 
 void check_large_spheres(const std::string& path, const Scene& scene) {
-  for (const Camera& camera : scene.cameras) {
-    for (const Sphere& sphere : scene.spheres) {
-      const double radius = double{sphere.radius};
-      const double distance = std::abs((V3d(camera.eye) - V3d(sphere.center)).length() - radius);
-      if (distance * kTooRound >= radius) continue;
-      throw Error(ErrorCode::limit,
-                  fmt::format("{}: sphere {}: its radius of {:.3g} is {:.3g} times the distance of "
-                              "camera {} from it, {:.0f} times is the most that floats take; make "
-                              "it smaller, or a mesh",
-                              path, sphere.name, std::ldexp(radius, scene.space.exponent),
-                              radius / distance, camera.name, kTooRound));
+  for (const Sphere& sphere : scene.spheres) {
+    for (const Camera& camera : scene.cameras) {
+      const double from_center = (V3d(camera.eye) - V3d(sphere.center)).length();
+      const double times = double{sphere.radius} / std::abs(from_center - double{sphere.radius});
+      if (!(times > kTooRound)) continue;
+      throw Error(
+          ErrorCode::limit,
+          fmt::format("{}: sphere {}: its radius of {:.3g} is {:.3g} times the distance of a "
+                      "camera from it, {:.0f} times are the most; make it smaller, or a mesh",
+                      path, sphere.name, std::ldexp(double{sphere.radius}, scene.space.exponent),
+                      times, kTooRound));
     }
   }
 }

@@ -150,8 +150,8 @@ std::optional<Imath::M33f> to_rec709(const OIIO::ImageSpec& spec) {
   std::copy_n(static_cast<const float*>(found->data()), own.size(), own.begin());
   bool differs = false;
   for (std::size_t k = 0; k < own.size(); ++k) {
-    // What is not above 0, or no triangle, says nothing.
-    if (!(k % 2 == 0 ? std::isfinite(own[k]) : own[k] > 0)) return std::nullopt;
+    // A y of 0 says nothing; one below is that of a primary that is no light (ACES).
+    if (!std::isfinite(own[k]) || (k % 2 == 1 && own[k] == 0)) return std::nullopt;
     differs |= std::abs(own[k] - kRec709[k]) > 1e-3f;
   }
   if (!differs) return std::nullopt;

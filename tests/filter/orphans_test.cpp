@@ -75,7 +75,8 @@ TEST_CASE("Without any source in the block its queries are left out and counted"
   const filter::Average result = run(set, 9, {});
   CHECK(result.statistics.without_source == 3);
   CHECK(result.roles[0] == filter::Role::left_out);
-  CHECK(result.roles[2] == filter::Role::no_vertex);
+  // Where no path with a vertex is shaded, none without one is part of the picture without filter.
+  CHECK(result.roles[2] == filter::Role::unchosen);
 }
 
 TEST_CASE("--sources 1/K keeps about a K-th, spread over the picture and over the passes") {

@@ -109,7 +109,7 @@ TEST_CASE("A set's own smear does not make its error seem small") {
   // A bright line on the dark, as the rim of a lamp: wide balls make a bright band of it.
   const tests::TempFolder folder;
   const std::size_t line = kSide / 2;
-  const auto truth = [&](std::size_t x) { return x == line ? 300.0 : 0.3; };
+  const auto truth = [&](std::size_t x) { return x >= line && x < line + 3 ? 300.0 : 0.3; };
   const std::vector<filter::Parameters> sets = radii(1);
   const study::Tuning tuning =
       tune_square(folder / "a.pvb", square(truth, [](std::size_t) { return 0.0; }), sets);
@@ -126,7 +126,8 @@ TEST_CASE("A set's own smear does not make its error seem small") {
   for (std::size_t k = 0; k < sets.size(); ++k) {
     const double error = reference.measure(outcome.pictures[0].filtered(k))[study::Metric::rel_mse];
     INFO("r0 " << sets[k].radius.r0);
-    CHECK(tuning.rows[k].error == Approx(error).epsilon(0.25));
+    CHECK(tuning.rows[k].error > error / 3);
+    CHECK(tuning.rows[k].error < error * 3);
   }
 }
 

@@ -87,7 +87,7 @@ TEST_CASE("The choice of psf tune is near the best of the grid, or it is not sur
   }
   for (const std::string& scene : scenes) {
     std::string line;
-    for (const std::size_t size : {128, 256}) {
+    for (const std::size_t size : {std::size_t{128}, std::size_t{256}}) {
       const TempFolder folder;
       render(scene, size, "--passes 1024 --seed 77 --image " + folder / "r.exr");
       for (const int seed : {1, 2}) {

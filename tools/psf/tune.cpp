@@ -94,10 +94,13 @@ void print(const study::Tuning& tuning, const study::Dump& dump) {
   fmt::print("u's share of the noise, which no parameter reaches: {}; {:.3g} of each error\n",
              share_text(tuning.noise), tuning.u_variance);
   if (!tuning.has_independent_paths) {
+    const std::string& sampler = dump.metadata().sampler;
     fmt::print(
-        "the passes of a {} sequence are not independent: the noise of its parts correlates by "
-        "{:.3f}, so errors are known up to a constant, taken to be {:.3g}\n",
-        dump.metadata().sampler, tuning.correlation, tuning.constant);
+        "{}: the noise of its parts correlates by {:.3f}, so errors are known up to a "
+        "constant, taken to be {:.3g}\n",
+        sampler.empty() ? "the dump names no sampler, so its passes may not be independent"
+                        : fmt::format("the passes of a {} sequence are not independent", sampler),
+        tuning.correlation, tuning.constant);
   } else if (std::abs(tuning.correlation) >= kCorrelated) {
     fmt::print(
         "the noise of its parts correlates by {:.3f}: what is common to them is taken for "
