@@ -97,9 +97,10 @@ TEST_CASE("every key of a material arrives", "[load][json]") {
   CHECK(!m.two_sided);
   CHECK(m.emits_two_sided);
   CHECK(m.emission == Rgb(2));
-  // Loaded once as colours and once as numbers.
-  CHECK(scene.textures.size() == 2);
-  CHECK(m.reflectance_texture == m.emission_texture);
+  // Loaded once for each use: reflectances have a range, radiances have none, numbers are no colours.
+  CHECK(scene.textures.size() == 3);
+  CHECK(scene.materials[3].reflectance_texture == m.reflectance_texture);
+  CHECK(m.reflectance_texture != m.emission_texture);
   CHECK(m.roughness_metalness_texture != m.reflectance_texture);
   CHECK(scene.materials[1].reflectance == Rgb(0.5f));
   CHECK(scene.materials[2].reflectance == Rgb(1));
