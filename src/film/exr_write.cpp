@@ -111,9 +111,10 @@ class Writer {
     if (result != EXR_ERR_SUCCESS) fail(result);
   }
   [[noreturn]] void fail(exr_result_t result) const {
-    throw Error(ErrorCode::io, path_ + ": cannot write the picture: " +
-                                   (file_.error() != 0 ? std::strerror(file_.error())
-                                                       : exr_get_default_error_message(result)));
+    throw Error(result == EXR_ERR_OUT_OF_MEMORY ? ErrorCode::limit : ErrorCode::io,
+                path_ + ": cannot write the picture: " +
+                    (file_.error() != 0 ? std::strerror(file_.error())
+                                        : exr_get_default_error_message(result)));
   }
 
   std::string path_;

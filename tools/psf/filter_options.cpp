@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/standard_streams.h"
 #include "filter/parameters_text.h"
 #include "pass_range.h"
 #include "study/missing_terms.h"
@@ -73,7 +74,7 @@ filter::TermSet asked_terms(const CLI::App& command) {
 void fit_terms(const study::Dump& dump, std::span<filter::Parameters> sets, filter::TermSet asked,
                bool quiet) {
   const std::string note = study::switch_off_missing(dump, sets, asked);
-  if (!note.empty() && !quiet) fmt::print(stderr, "note: {}\n", note);
+  if (!note.empty() && !quiet) core::say("note: " + note);
 }
 
 filter::Parameters parameters_of(const ParameterOptions& options) {
