@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <stdlib.h>  // NOLINT: mkdtemp is POSIX
 
+#include <deque>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -14,8 +15,8 @@
 #include "cli.h"
 #include "core/interrupt.h"
 #include "core/json_text.h"
-#include "core/output_file.h"
 #include "core/parallel.h"
+#include "core/unfinished.h"
 #include "formats/error.h"
 #include "version.h"
 
@@ -41,6 +42,10 @@ class TempFolder {
       throw Error(ErrorCode::io, parent + ": cannot create a folder in it; give another to --temp");
     }
     path_ = name;
+    unfinished_.emplace_back(name);
+    for (const char* of_render : {"render.json", "render.pvb", "render.exr"}) {
+      unfinished_.emplace_back(name + "/" + of_render);
+    }
   }
   ~TempFolder() {
     std::error_code ignored;
@@ -49,11 +54,15 @@ class TempFolder {
   TempFolder(const TempFolder&) = delete;
   TempFolder& operator=(const TempFolder&) = delete;
 
-  [[nodiscard]] std::string operator/(const char* name) const { return path_ / name; }
+  [[nodiscard]] std::string operator/(const char* name) {
+    unfinished_.emplace_back((path_ / name).string());
+    return path_ / name;
+  }
   [[nodiscard]] std::string path() const { return path_; }
 
  private:
   std::filesystem::path path_;
+  std::deque<core::Unfinished> unfinished_;  // the folder and what is in it
 };
 
 void add(std::vector<Row>& rows, std::vector<Row> more) {
@@ -87,7 +96,8 @@ nlohmann::ordered_json to_json(const FilesOptions& options, const formats::Reade
 
 void run(const FilesOptions& options) {
   const core::ThreadLimit threads(options.common.threads);
-  const TempFolder folder(options.temp);
+  tools::check_files({options.input, options.render.scene}, {options.common.json});
+  TempFolder folder(options.temp);
   const std::string raw = folder / "raw.pvb", zstd = folder / "zstd.pvb";
   make_dumps(options, raw, zstd);
   std::vector<Row> rows;

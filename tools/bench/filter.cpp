@@ -15,7 +15,6 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/json_text.h"
-#include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "filter/parameters_text.h"
@@ -214,7 +213,7 @@ class Bench {
 void run(const FilterOptions& options) {
   tools::keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
-  if (!options.common.json.empty()) core::OutputFile probe(options.common.json);
+  tools::check_files({options.input}, {options.common.json});
   Bench bench(options);
   bench.measure();
   bench.print();

@@ -13,7 +13,6 @@
 #include "bench/turns.h"
 #include "cli.h"
 #include "core/json_text.h"
-#include "core/output_file.h"
 #include "core/parallel.h"
 #include "filter/parameters_text.h"
 #include "option_values.h"
@@ -86,7 +85,7 @@ void add_rows(const study::Dump& dump, const std::string& r0, std::size_t repeat
 void run(const SweepOptions& options) {
   tools::keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
-  if (!options.common.json.empty()) core::OutputFile probe(options.common.json);
+  tools::check_files({options.input}, {options.common.json});
   const study::Dump dump(options.input);
   std::vector<Row> rows;
   for (const std::string& r0 : options.largest) add_rows(dump, r0, options.repeat, rows);
