@@ -128,7 +128,7 @@ TEST_CASE("standard output that is redirected to an input or an output is refuse
   CHECK(run_confined(inputs.placed("psf info OUT/a.pvb"), append_to(dump)).code == 2);
   CHECK(read_text(dump) == before);
   const std::string text = inputs.out() + "text";
-  for (const std::string name : {text, std::string("/dev/stdout"), std::string("/dev/fd/1")}) {
+  for (const std::string& name : {text, std::string("/dev/stdout"), std::string("/dev/fd/1")}) {
     const Outcome outcome =
         run_confined(inputs.placed("psf info OUT/a.pvb --json ") + name, append_to(text));
     CHECK(outcome.code == 2);
