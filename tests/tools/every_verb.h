@@ -19,7 +19,7 @@ class VerbInputs {
     std::filesystem::create_directory(in());
     std::ofstream(in() + "room.json") << R"({
       "cameras": [{"name": "one", "eye": [0, 1, 4], "target": [0, 1, 0], "fov": 50,
-                   "resolution": [16, 12]}],
+                   "size": [16, 12]}],
       "materials": [{"name": "grey", "kind": "diffuse", "reflectance": 0.5}],
       "environment": {"radiance": 1},
       "shapes": [{"shape": "sphere", "center": [0, 1, 0], "radius": 1, "material": "grey"}]})";

@@ -154,8 +154,7 @@ TEST_CASE("a dump may be joined under the name of an input, and a study may keep
 
 TEST_CASE("names that are no UTF-8, have spaces, backslashes or newlines are names") {
   const VerbInputs inputs;
-  const std::vector<std::string> names = {"caf\xe9",   "two words", "back\\slash",
-                                          "new\nline", "\xff\xfe",  "quote'\"s"};
+  const std::vector<std::string> names = {"caf\xe9", "two words\\", "new\nline'\"s"};
   for (const std::string& name : names) {
     inputs.empty();
     const auto quoted = [&](const std::string& end) {
