@@ -243,7 +243,8 @@ TEST_CASE("Every mistake with psf explain is one line and leaves nothing behind"
       {"--pixel 1,2 --json " + work / "nowhere/x.json", 4, "does not exist, create it first"},
       {"--pixel 1,2 --ply " + work / "nowhere/x.ply", 4, "does not exist, create it first"},
       {"--pixel 1,2", 4, "b.pvb: ", "b.pvb"},
-      {"--pixel 1,2", 3, "has no channel visibility, which --visibility needs", "two.pvb"},
+      {"--pixel 1,2 --visibility", 3, "has no channel visibility, which --visibility needs",
+       "two.pvb"},
   };
   for (const Mistake& mistake : mistakes) {
     const Outcome outcome = work.explain(mistake.options, mistake.file);

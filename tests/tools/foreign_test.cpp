@@ -176,7 +176,7 @@ TEST_CASE("The other verbs take it, and u has no share of the noise where there 
   write(folder / "a.pvb", 1);
   for (const std::string verb : {"info <dump> --stats --json <out>", "verify <dump>",
                                  "cat <dump> -o <out>.pvb", "export <dump> -o <out>.ply",
-                                 "export <dump> -o <out>.csv", "export <dump> -o <out>.arrays"}) {
+                                 "export <dump> -o <out>.csv", "export <dump> -o <out>folder"}) {
     const std::string line = command(verb, folder, folder / "a.pvb");
     const Outcome outcome = run(line);
     INFO(line << ": " << outcome.err);

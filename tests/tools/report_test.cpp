@@ -25,8 +25,7 @@ TEST_CASE("psf report writes one page of several folders and says what it left o
 
   const std::string fewer =
       "psf report " + folder / "radii -o " + folder / "r.html --max-pictures 3";
-  CHECK(run(fewer).err ==
-        "psf report: note: 11 pictures were left out, the worst ones; see --max-pictures\n");
+  CHECK(run(fewer).err == "note: 11 pictures were left out, the worst ones; see --max-pictures\n");
   CHECK(run(fewer + " --quiet").err.empty());
 }
 
