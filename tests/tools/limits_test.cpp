@@ -102,7 +102,7 @@ TEST_CASE("a limit of file sizes is an I/O error that names the file, and no par
       CHECK(outcome.err.find("File too large") != std::string::npos);
     }
     INFO(command);
-    CHECK(refused >= 2);
+    CHECK(refused >= 1);  // the figures of psf verify are shorter than 512 bytes
     CHECK(refused < 5);
   }
 }
