@@ -6,4 +6,9 @@
 #include <catch2/catch.hpp>
 #endif
 
-int main(int argc, char** argv) { return Catch::Session().run(argc, argv); }
+#include <sys/stat.h>
+
+int main(int argc, char** argv) {
+  umask(022);  // programs are tried as other users too, who must be able to read what is made here
+  return Catch::Session().run(argc, argv);
+}

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 #include <vector>
@@ -62,6 +63,10 @@ Ending run(CLI::App& app, int argc, char** argv) {
     return {error.code(), program, error.what()};
   } catch (const std::bad_alloc&) {
     return {ErrorCode::limit, program, "out of memory; use a smaller block or picture"};
+  } catch (const std::filesystem::filesystem_error& error) {
+    return {ErrorCode::io, program,
+            fmt::format("{}: {}; check the folder's permissions, or choose another",
+                        error.path1().string(), error.code().message())};
   } catch (const std::exception& error) {
     if (std::ferror(stdout) != 0) return {};  // {fmt} throws where it cannot print: see run_tool()
     return {ErrorCode::io, program, error.what()};

@@ -81,10 +81,12 @@ std::string format_bytes(double bytes) {
   return fmt::format("{:.1f} kB", bytes / 1e3);
 }
 
-// A dump that goes on is an output alone.
-void check_all_files(const RenderOptions& options, std::vector<std::string> outputs) {
+// A dump that goes on is an output alone. `inputs`: beside those of the command line.
+void check_all_files(const RenderOptions& options, std::vector<std::string> inputs,
+                     std::vector<std::string> outputs) {
+  inputs.insert(inputs.end(), {options.scene, options.overrides.sky_map.value_or("")});
   outputs.insert(outputs.end(), {options.output, options.common.json});
-  check_files({options.scene, options.overrides.sky_map.value_or("")}, outputs);
+  check_files(inputs, outputs);
 }
 
 // A dump whose vertices are all in one place has nothing to filter.
@@ -115,12 +117,9 @@ formats::Writer open_writer(const RenderOptions& options, const formats::Head& h
 void run(RenderOptions& options) {
   const core::ThreadLimit threads(options.common.threads);
   check_outputs(options);
-  check_all_files(options, options.images);  // what can be said before anything is loaded
+  check_all_files(options, {}, options.images);  // what can be said before anything is loaded
   const auto start = std::chrono::steady_clock::now();
   const render::Scene scene = render::load_scene(options.scene, options.overrides);
-  if (!options.common.quiet) {
-    for (const std::string& warning : scene.warnings) core::say("note: " + warning);
-  }
   auto& settings = options.settings;
   settings.producer = std::string("psf-render ") + kVersion;
   settings.quiet = options.common.quiet;
@@ -133,7 +132,10 @@ void run(RenderOptions& options) {
   std::vector<std::string> camera_names;
   for (const std::size_t camera : cameras) camera_names.push_back(scene.cameras[camera].name);
   const PictureNames names(options.images, camera_names);
-  check_all_files(options, names.all({}));
+  check_all_files(options, scene.files, names.all({}));
+  if (!options.common.quiet) {
+    for (const std::string& warning : scene.warnings) core::say("note: " + warning);
+  }
   if (!options.output.empty()) {
     check_digits(options, scene);
     writer.emplace(open_writer(options, render::make_head(scene, *integrator, settings)));

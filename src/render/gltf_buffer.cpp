@@ -81,8 +81,12 @@ const std::vector<unsigned char>& buffer_of(GltfLoad& load, const JsonCursor& in
   const auto uri = buffer.find("uri");
   if (uri) {
     const std::string text = uri->text();
-    known->second =
-        is_data_uri(text) ? decode_data_uri(*uri) : read_file(*uri, file_of_uri(load, *uri));
+    if (is_data_uri(text)) {
+      known->second = decode_data_uri(*uri);
+    } else {
+      load.scene.files.push_back(file_of_uri(load, *uri));
+      known->second = read_file(*uri, load.scene.files.back());
+    }
   } else if (index.whole() == 0 && !load.chunk.empty()) {
     known->second = std::move(load.chunk);
   } else {

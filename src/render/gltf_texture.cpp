@@ -49,6 +49,7 @@ int load_image(GltfLoad& load, const JsonCursor& index, TextureUse use,
   }
   if (file.empty() && bytes.empty()) throw Error(ErrorCode::bad_input, name + " is empty");
   std::error_code ignored;
+  if (!file.empty()) load.scene.files.push_back(file);
   if (!file.empty() && !std::filesystem::exists(file, ignored))
     throw Error(ErrorCode::io, fmt::format("{}: {}: no such picture", name, file));
   why = Texture::why_unreadable(file, bytes);

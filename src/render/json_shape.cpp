@@ -176,6 +176,7 @@ void add_mesh_file(const JsonCursor& json, int material, bool flipped,
   Scene part;
   try {
     const std::string path = find_file(file.file(), file.text());
+    scene.files.push_back(path);
     if (scene.space.exact) {
       part = load_fitting(path, [&](Scene& empty) { load_mesh_file(path, empty); });
     } else {
@@ -206,6 +207,7 @@ void add_mesh_file(const JsonCursor& json, int material, bool flipped,
     if (flipped) flip(mesh);
     add_mesh(json, mesh, of_part, load);
   }
+  scene.files.insert(scene.files.end(), part.files.begin(), part.files.end());
   for (std::string& warning : part.warnings) scene.warnings.push_back(std::move(warning));
 }
 

@@ -60,6 +60,7 @@ int TextureTable::load(const std::string& scene_file, const std::string& file, T
   const std::string path = find_file(scene_file, file);
   const auto [entry, is_new] = known_.try_emplace({path, use}, kNone);
   if (!is_new) return entry->second;
+  scene_.files.push_back(path);
   std::error_code ignored;
   if (lenient_ && fs::exists(path, ignored)) {
     const std::string why = Texture::why_unreadable(path);

@@ -92,6 +92,7 @@ class ObjLoad {
 
   void add_library(const std::string& library) {
     if (!libraries_.insert(library).second) return;
+    scene_.files.push_back(library);
     LeftOut left_out;
     std::size_t doubles = 0;
     const MtlMaterial* first_double = nullptr;

@@ -102,6 +102,7 @@ struct Scene {
   std::vector<Light> lights;
   Environment environment;
   std::vector<Camera> cameras;
+  std::vector<std::string> files;     // read beside the scene file, some of them more than once
   std::vector<std::string> warnings;  // what was repaired or left out while loading, one line each
   Space space;
   Space wanted;  // where exact: what a loader found that the scene must be loaded in instead

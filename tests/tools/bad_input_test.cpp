@@ -113,7 +113,7 @@ TEST_CASE("every mistake is one line, has its exit code and leaves nothing behin
       {"psf filter FOLDER/nowhere.pvb -o FOLDER/x.exr", 4, "nowhere.pvb: "},
       {"psf filter FOLDER/text.pvb -o FOLDER/x.exr", 3, "is no path-vertex buffer"},
       {"psf filter FOLDER/cut.pvb -o FOLDER/x.exr", 3, "cut.pvb: "},
-      {"psf filter FOLDER/lacking.pvb -o FOLDER/x.exr --visibility --gloss off", 3,
+      {"psf filter FOLDER/lacking.pvb -o FOLDER/x.exr --visibility", 3,
        "has no channel visibility, which --visibility needs; render a dump that has it, or give "
        "--visibility=off"},
       {"psf info FOLDER/text.pvb", 3, "is no path-vertex buffer"},

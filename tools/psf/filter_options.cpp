@@ -74,6 +74,9 @@ filter::TermSet asked_terms(const CLI::App& command) {
 void fit_terms(const study::Dump& dump, std::span<filter::Parameters> sets, filter::TermSet asked,
                bool quiet) {
   const std::string note = study::switch_off_missing(dump, sets, asked);
+  for (const filter::Parameters& set : sets) {
+    static_cast<void>(dump.select(set, false));  // an error is one line, without notes before it
+  }
   if (!note.empty() && !quiet) core::say("note: " + note);
 }
 

@@ -1,5 +1,6 @@
 """Drives a headless Chromium over its debugging pipe, with nothing but Python's standard library."""
 import base64
+import fcntl
 import json
 import os
 import select
@@ -19,19 +20,29 @@ def find():
     return shutil.which('chromium') or shutil.which('chromium-browser')
 
 
+def _pipe_apart():
+    """The two ends of a pipe, apart from 3 and 4: the browser wants to be given those."""
+    ends = os.pipe()
+    try:
+        return [fcntl.fcntl(end, fcntl.F_DUPFD_CLOEXEC, 10) for end in ends]
+    finally:
+        for end in ends:
+            os.close(end)
+
+
 class Chromium:
     """One page. Everything that the console says, and every request but the page itself, is kept."""
 
     def __init__(self, width=1400, height=900):
         self.profile = tempfile.mkdtemp(prefix='psf-chromium-')
-        to_browser, self.write_end = os.pipe()
-        self.read_end, from_browser = os.pipe()
+        to_browser, self.write_end = _pipe_apart()
+        self.read_end, from_browser = _pipe_apart()
         flags = ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-sync',
                  '--disable-background-networking', '--disable-component-update', '--disable-dev-shm-usage',
                  '--force-device-scale-factor=1', '--hide-scrollbars', '--remote-debugging-pipe',
                  f'--window-size={width},{height}', f'--user-data-dir={self.profile}', 'about:blank']
         self.process = subprocess.Popen(
-            ['/bin/sh', '-c', f'exec "$@" 3<&{to_browser} 4>&{from_browser}', 'sh', find(), *flags],
+            ['bash', '-c', f'exec "$@" 3<&{to_browser} 4>&{from_browser}', 'bash', find(), *flags],
             pass_fds=(to_browser, from_browser), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
             stdin=subprocess.DEVNULL, start_new_session=True, env={**os.environ, 'HOME': self.profile})
         os.close(to_browser)
