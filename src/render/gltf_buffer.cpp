@@ -66,7 +66,7 @@ std::vector<unsigned char> read_file(const JsonCursor& uri, const std::string& p
   if (!fs::is_directory(path, ignored)) file.open(path, std::ios::binary);
   if (!file.is_open()) {
     throw Error(ErrorCode::io,
-                fmt::format("{}: {}: {}", uri.where(), path,
+                fmt::format("{}: {}: {}", uri.where_exactly(), path,
                             fs::exists(path, ignored) ? "cannot be opened" : "no such file"));
   }
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};

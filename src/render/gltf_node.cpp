@@ -111,10 +111,10 @@ void add_primitive(GltfLoad& load, const JsonCursor& primitive, const std::strin
   mesh.triangles = to_triangles(indices, mode);
   if (mesh.triangles.size() > (kMaxPrimitives - load.triangles) / placements.size() ||
       mesh.positions.size() > UINT32_MAX / placements.size()) {
-    throw Error(
-        ErrorCode::limit,
-        fmt::format("{}: {} copies of {} triangles are more than psf takes ({} in a scene)",
-                    primitive.where(), placements.size(), mesh.triangles.size(), kMaxPrimitives));
+    throw Error(ErrorCode::limit,
+                fmt::format("{}: {} copies of {} triangles are more than psf takes ({} in a scene)",
+                            primitive.where_exactly(), placements.size(), mesh.triangles.size(),
+                            kMaxPrimitives));
   }
   load.triangles += mesh.triangles.size() * placements.size();
   Mesh all;
@@ -175,7 +175,7 @@ std::vector<Imath::M44d> gltf_instances(GltfLoad& load, const JsonCursor& extens
              scale = read("SCALE", 3);
   if (count.value_or(1) > kMaxCopies) {
     throw Error(ErrorCode::limit, fmt::format("{}: {} copies are more than psf takes ({})",
-                                              extension.where(), *count, kMaxCopies));
+                                              extension.where_exactly(), *count, kMaxCopies));
   }
   std::vector<Imath::M44d> placements(count.value_or(1));
   for (std::size_t i = 0; i < placements.size(); ++i) {

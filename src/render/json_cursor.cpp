@@ -61,6 +61,46 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+// The line of a value, from 1, by its path in the document; 0 where the file is no text of JSON.
+std::size_t line_of(const std::string& file, const std::string& path) {
+  struct Around {
+    std::string path;
+    bool is_array;
+    std::size_t items = 0;
+  };
+  std::ifstream in(file, std::ios::binary);
+  std::vector<Around> around;
+  std::string key;
+  std::streamoff end = 0;
+  const auto watch = [&](int, json::parse_event_t event, json& parsed) {
+    using Event = json::parse_event_t;
+    if (event == Event::key) {
+      key = parsed.get<std::string>();
+    } else if (event == Event::object_end || event == Event::array_end) {
+      around.pop_back();
+    } else {
+      std::string place;
+      if (!around.empty()) {
+        Around& a = around.back();
+        place = fmt::format("{}/{}", a.path, a.is_array ? std::to_string(a.items++) : key);
+      }
+      if (place == path) {
+        // What ends a number is read with it.
+        end = in.rdbuf()->pubseekoff(0, std::ios::cur, std::ios::in);
+        if (parsed.is_number()) --end;
+      }
+      if (event != Event::value) around.push_back({std::move(place), event == Event::array_start});
+    }
+    return event != Event::value;  // nothing is kept
+  };
+  if (json::parse(in, watch, false).is_discarded()) return 0;
+  in.clear();
+  in.seekg(0);
+  std::size_t lines = 1;
+  for (std::streamoff k = 0; k < end; ++k) lines += in.get() == '\n' ? 1u : 0u;
+  return lines;
+}
+
 }  // namespace
 
 std::string suggestion(std::string_view word, std::span<const std::string_view> known) {
@@ -121,7 +161,12 @@ json parse_json(const std::string& text, const std::string& path) {
 }
 
 void JsonCursor::fail(const std::string& problem) const {
-  throw Error(ErrorCode::bad_input, where() + ": " + problem);
+  throw Error(ErrorCode::bad_input, where_exactly() + ": " + problem);
+}
+
+std::string JsonCursor::where_exactly() const {
+  const std::size_t line = line_of(file_, path_);
+  return line == 0 ? where() : fmt::format("{}:{}: {}", file_, line, path());
 }
 
 void JsonCursor::expected(const std::string& what) const {

@@ -33,7 +33,7 @@ constexpr Range kPositive{FLT_MIN, FLT_MAX, "> 0"};
 // The same of the text of a file.
 [[nodiscard]] nlohmann::json parse_json(const std::string& text, const std::string& path);
 
-// All getters throw Error{bad_input}: "cornell.json: /materials/2/roughness: expected a number in
+// All getters throw Error{bad_input}: "cornell.json:31: /materials/2/roughness: expected a number in
 // [0, 1], got "shiny"". A cursor points into the document and must not outlive it.
 class JsonCursor {
  public:
@@ -78,6 +78,8 @@ class JsonCursor {
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] std::string path() const { return path_.empty() ? "/" : path_; }  // JSON pointer
   [[nodiscard]] std::string where() const { return file_ + ": " + path(); }
+  // The same with the line, for errors: the file is read once more to find it.
+  [[nodiscard]] std::string where_exactly() const;
   [[noreturn]] void fail(const std::string& problem) const;
   [[noreturn]] void expected(const std::string& what) const;  // "expected what, got the value"
 

@@ -40,8 +40,8 @@ TEST_CASE("a file that is not glTF 2.0 is refused by its version", "[load][gltf]
   CHECK(message(R"({"asset": {"version": "2.1", "minVersion": "2.1"}})") ==
         "s.gltf: needs glTF 2.1 (/asset/minVersion), psf reads 2.0");
   CHECK(message(R"({"asset": {"version": 2}})") ==
-        "s.gltf: /asset/version: expected a text in quotes, got 2");
-  CHECK(message(R"({"nodes": []})") == "s.gltf: /: the key \"asset\" is missing");
+        "s.gltf:1: /asset/version: expected a text in quotes, got 2");
+  CHECK(message(R"({"nodes": []})") == "s.gltf:1: /: the key \"asset\" is missing");
   std::string old = triangle().glb();
   old[4] = 1;
   CHECK(load_failure(folder.write("s.glb", old)).message == "s.glb: is glTF 1.0, psf reads 2.0");

@@ -258,7 +258,7 @@ TEST_CASE("an error of a glTF file names the place in it", "[load][gltf]") {
   Document d = triangle();
   d.root["accessors"][0]["count"] = 1000;
   CHECK(message_of(d) ==
-        "s.gltf: /accessors/0: 1000 elements do not fit into the 60 bytes of bufferView 0");
+        "s.gltf:1: /accessors/0: 1000 elements do not fit into the 60 bytes of bufferView 0");
   d = triangle();
   d.root["accessors"][0]["count"] = 4000000000u;
   d.root["accessors"][0].erase("bufferView");
@@ -273,7 +273,7 @@ TEST_CASE("an error of a glTF file names the place in it", "[load][gltf]") {
   CHECK(message_of(d) == "s.gltf: mesh tri: vertex 1 is not finite");
   d = triangle();
   d.root["nodes"][0]["mesh"] = 5;
-  CHECK(message_of(d) == "s.gltf: /nodes/0/mesh: there is no mesh 5");
+  CHECK(message_of(d) == "s.gltf:1: /nodes/0/mesh: there is no mesh 5");
   d = triangle();
   d.root["nodes"][0]["scale"] = {1, 0, 1};
   CHECK(contains(message_of(d), "/meshes/0/primitives/0: the transform flattens the shape"));
@@ -287,7 +287,7 @@ TEST_CASE("an error of a glTF file names the place in it", "[load][gltf]") {
   d.root["materials"] = {
       {{"name", "bright"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1.5, 1, 1}}}}}};
   CHECK(message_of(d) ==
-        "s.gltf: /materials/0/pbrMetallicRoughness/baseColorFactor/1: expected a number in [0, 1], "
+        "s.gltf:1: /materials/0/pbrMetallicRoughness/baseColorFactor/1: expected a number in [0, 1], "
         "got 1.5");
 }
 

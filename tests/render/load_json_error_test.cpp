@@ -1,4 +1,6 @@
 // The JSON scene file: where each error says it is.
+#include <fmt/format.h>
+
 #include "catch.h"
 #include "load_support.h"
 
@@ -13,60 +15,78 @@ std::string message_of(const std::string& text, ErrorCode code = ErrorCode::bad_
   return failure.message;
 }
 
+TEST_CASE("an error of the JSON scene names the line of the value", "[load][json]") {
+  const auto at = [](int line, const std::string& path, const std::string& text) {
+    const std::string message = message_of(text);
+    INFO(message);
+    CHECK(message.starts_with(fmt::format("s.json:{}: {}: ", line, path)));
+  };
+  const std::string lights = "{\n\"lights\": [\n{\"kind\": \"point\",\n";
+  at(5, "/lights/0/position/1", lights + "\"position\": [0,\n\"a\"\n, 0]}\n]}");
+  at(4, "/lights/0/intensity", lights + "\"position\": [0, 0, 0], \"intensity\": -1\n}\n]}");
+  at(5, "/lights/0/intensity", lights + "\"position\": [0, 0,\n 0], \"intensity\": -1}]}");
+  at(5, "/lights/0/intensity/2",
+     lights +
+         "\"comment\": [[], {\"intensity\": 2}], \"position\": [0, 0, 0],"
+         "\"intensity\": [1,\n1,-1\n]}]}");
+  at(3, "/lights/0", lights + "\"\\u0061\": 1}]}");
+  at(2, "/environment", "{\"lights\": [], \n\"environment\": true\n\n}");
+}
+
 TEST_CASE("an error of the JSON scene names file and JSON path", "[load][json]") {
-  CHECK(
-      message_of(
-          R"({"materials": [{"name": "a"}, {"name": "b"}, {"name": "c",
+  CHECK(message_of(
+            R"({"materials": [{"name": "a"}, {"name": "b"}, {"name": "c",
               "roughness": "shiny"}]})") ==
-      "s.json: /materials/2/roughness: expected a number in [0, 1], got \"shiny\"");
+        "s.json:2: /materials/2/roughness: expected a number in [0, 1], got \"shiny\"");
   CHECK(message_of(R"({"materials": [{"name": "a", "rougness": 0.5}]})") ==
-        "s.json: /materials/0: unknown key \"rougness\"; did you mean \"roughness\"?");
+        "s.json:1: /materials/0: unknown key \"rougness\"; did you mean \"roughness\"?");
   CHECK(message_of(R"({"camera": []})") ==
-        "s.json: /: unknown key \"camera\"; did you mean \"cameras\"?");
+        "s.json:1: /: unknown key \"camera\"; did you mean \"cameras\"?");
   CHECK(message_of(R"({"materials": [{"name": "a", "qqqqqqqq": 1}]})") ==
-        "s.json: /materials/0: unknown key \"qqqqqqqq\"");
+        "s.json:1: /materials/0: unknown key \"qqqqqqqq\"");
   CHECK(message_of(R"({"materials": [{"name": "a", "reflectance": [0.5, 1.5, 0.5]}]})") ==
-        "s.json: /materials/0/reflectance/1: expected a number in [0, 1], got 1.5");
+        "s.json:1: /materials/0/reflectance/1: expected a number in [0, 1], got 1.5");
   CHECK(message_of(R"({"materials": [{"name": "a", "kind": "velvet"}]})") ==
-        "s.json: /materials/0/kind: expected one of diffuse, mirror, glass, conductor, coat, got "
+        "s.json:1: /materials/0/kind: expected one of diffuse, mirror, glass, conductor, coat, got "
         "\"velvet\"");
   CHECK(message_of(R"({"materials": [{"name": "a"}, {"name": "a"}]})") ==
-        "s.json: /materials/1/name: another material is called \"a\"");
+        "s.json:1: /materials/1/name: another material is called \"a\"");
   CHECK(message_of(R"({"materials": [{"kind": "glass"}]})") ==
-        "s.json: /materials/0: the key \"name\" is missing");
+        "s.json:1: /materials/0: the key \"name\" is missing");
   CHECK(message_of(with_shapes(
             R"({"shape": "sphere", "material": "whit", "center": [0,0,0], "radius": 1})")) ==
-        "s.json: /shapes/0/material: no material is called \"whit\"; did you mean \"white\"?");
+        "s.json:2: /shapes/0/material: no material is called \"whit\"; did you mean \"white\"?");
   CHECK(message_of(with_shapes(
             R"({"shape": "sphere", "material": "white", "center": [0,0], "radius": 1})")) ==
-        "s.json: /shapes/0/center: expected an array of 3 numbers, got [0,0]");
+        "s.json:2: /shapes/0/center: expected an array of 3 numbers, got [0,0]");
   CHECK(message_of(with_shapes(
             R"({"shape": "sphere", "material": "white", "center": [0,0,0], "radius": 0})")) ==
-        "s.json: /shapes/0/radius: expected a number > 0, got 0");
-  CHECK(message_of(
-            with_shapes(R"({"shape": "sphere", "material": "white", "center": [0,0,0], "radius": 1,
+        "s.json:2: /shapes/0/radius: expected a number > 0, got 0");
+  CHECK(
+      message_of(
+          with_shapes(R"({"shape": "sphere", "material": "white", "center": [0,0,0], "radius": 1,
                                    "transform": {"scale": [1, 2, 1]}})")) ==
-        "s.json: /shapes/0: a sphere can be moved, turned and scaled evenly only; use a lathe for "
-        "an ellipsoid");
+      "s.json:2: /shapes/0: a sphere can be moved, turned and scaled evenly only; use a lathe for "
+      "an ellipsoid");
   CHECK(
       message_of(with_shapes(R"({"shape": "group", "shapes": [{"shape": "box", "material": "white",
                                    "min": [0,0,0], "max": [1,0,1]}]})")) ==
-      "s.json: /shapes/0/shapes/0: \"min\" is not below \"max\" in each of x, y and z");
+      "s.json:2: /shapes/0/shapes/0: \"min\" is not below \"max\" in each of x, y and z");
   CHECK(message_of(with_shapes(
             R"({"shape": "mesh", "material": "white", "positions": [[0,0,0],[1,0,0],[0,1,0]],
                                    "triangles": [[0, 1, 3]]})")) ==
-        "s.json: /shapes/0/triangles/0/2: expected a whole number from 0 to 2, got 3");
+        "s.json:3: /shapes/0/triangles/0/2: expected a whole number from 0 to 2, got 3");
   CHECK(message_of(
             with_shapes(R"({"shape": "quad", "material": "white", "origin": [0,0,0], "u": [1,0,0],
                                    "v": [0,1,0], "transform": [{"rotate": 5, "axis": "w"}]})")) ==
-        "s.json: /shapes/0/transform/0/axis: expected one of x, y, z, got \"w\"");
+        "s.json:3: /shapes/0/transform/0/axis: expected one of x, y, z, got \"w\"");
   CHECK(message_of(R"({"cameras": [{"eye": [0,0,1], "target": [0,0,0], "fov": 180}]})") ==
-        "s.json: /cameras/0/fov: expected a number of degrees in (0, 180), got 180");
+        "s.json:1: /cameras/0/fov: expected a number of degrees in (0, 180), got 180");
   CHECK(message_of(R"({"cameras": [{"eye": [0,0,1], "target": [0,0,0], "size": [0, 10]}]})") ==
-        "s.json: /cameras/0/size/0: expected a whole number from 1 to 65536, got 0");
+        "s.json:1: /cameras/0/size/0: expected a whole number from 1 to 65536, got 0");
   CHECK(message_of(R"({"lights": [{"kind": "point", "position": [0,0,0], "intensity": -1}]})") ==
-        "s.json: /lights/0/intensity: expected a number >= 0, got -1");
-  CHECK(message_of("[1, 2]") == "s.json: /: expected an object, got [1,2]");
+        "s.json:1: /lights/0/intensity: expected a number >= 0, got -1");
+  CHECK(message_of("[1, 2]") == "s.json:1: /: expected an object, got [1,2]");
 }
 
 TEST_CASE("malformed JSON is named with line and column", "[load][json]") {
