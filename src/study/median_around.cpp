@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/parallel.h"
 
@@ -12,29 +13,23 @@ constexpr std::size_t kReach = 2, kSide = 2 * kReach + 1;  // pixels
 
 }  // namespace
 
-std::vector<Rgb> median_around(std::span<const Rgb> picture, std::size_t width) {
-  std::vector<Rgb> medians(picture.size(), Rgb(0, 0, 0));
-  if (picture.empty()) return medians;
-  const std::size_t height = picture.size() / width;
+std::vector<double> median_around(std::span<const double> values, std::size_t width) {
+  std::vector<double> medians(values.size());
+  const std::size_t height = width == 0 ? 0 : values.size() / width;
   core::parallel_for(height, 1, [&](std::size_t y, std::size_t) {
-    std::array<std::array<float, kSide * kSide>, 3> around;
+    std::array<double, kSide * kSide> around;
     for (std::size_t x = 0; x < width; ++x) {
       std::size_t count = 0;
       for (std::size_t v = y - std::min(y, kReach); v <= std::min(y + kReach, height - 1); ++v) {
         for (std::size_t u = x - std::min(x, kReach); u <= std::min(x + kReach, width - 1); ++u) {
-          const Rgb& value = picture[v * width + u];
-          if (!is_finite(value)) continue;
-          for (int c = 0; c < 3; ++c) around[static_cast<std::size_t>(c)][count] = value[c];
-          ++count;
+          const double value = values[v * width + u];
+          if (std::isfinite(value)) around[count++] = value;
         }
       }
       if (count == 0) continue;
-      for (int c = 0; c < 3; ++c) {
-        const auto first = around[static_cast<std::size_t>(c)].begin();
-        const auto middle = first + static_cast<std::ptrdiff_t>(count / 2);
-        std::nth_element(first, middle, first + static_cast<std::ptrdiff_t>(count));
-        medians[y * width + x][c] = *middle;
-      }
+      const auto middle = around.begin() + static_cast<std::ptrdiff_t>(count / 2);
+      std::nth_element(around.begin(), middle, around.begin() + static_cast<std::ptrdiff_t>(count));
+      medians[y * width + x] = *middle;
     }
   });
   return medians;

@@ -5,14 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "core/vec.h"
-
 namespace psf::study {
 
-// (height, width) of each component the median over the square of 5 x 5 pixels around, as far as it
-// lies in the picture. Of a picture without filter, nothing that a filter does is in it, and
-// neither is what a rare bright path or the rim of a lamp leaves in fewer than half of the pixels.
-// Pixels that are not finite do not count; 0 where none is.
-[[nodiscard]] std::vector<Rgb> median_around(std::span<const Rgb> picture, std::size_t width);
+// (height, width) the median over the square of 5 x 5 pixels around, as far as it lies in the
+// picture. Of a picture without filter, nothing that a filter does is in it, and neither is what a
+// rare bright path or the rim of a lamp leaves in fewer than half of the pixels. Values that are
+// not finite do not count; 0 where none is.
+[[nodiscard]] std::vector<double> median_around(std::span<const double> values, std::size_t width);
 
 }  // namespace psf::study

@@ -1,19 +1,19 @@
 #include "study/noise_share.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/parallel.h"
 #include "filter/blocks.h"
 #include "study/block_reader.h"
+#include "study/median_around.h"
 #include "study/pixel_bands.h"
 
 namespace psf::study {
 namespace {
 
 constexpr std::size_t kGrain = 4096;  // pixels
-constexpr std::size_t kReach = 2;     // pixels to each side that g is the median of
 
 // In double: luminances of any floats, and their squares.
 double luminance_of(const Rgb& c) {
@@ -42,23 +42,11 @@ void NoiseMoments::add(std::uint32_t pixel, const Rgb& u, const Rgb& alpha_c) {
 }
 
 std::vector<double> NoiseMoments::guess() const {
-  std::vector<double> result(pixels_.size());
-  core::parallel_for(height_, 1, [&](std::size_t y, std::size_t) {
-    std::array<double, (2 * kReach + 1) * (2 * kReach + 1)> around;
-    for (std::size_t x = 0; x < width_; ++x) {
-      std::size_t count = 0;
-      for (std::size_t v = y - std::min(y, kReach); v <= std::min(y + kReach, height_ - 1); ++v) {
-        for (std::size_t w = x - std::min(x, kReach); w <= std::min(x + kReach, width_ - 1); ++w) {
-          const Pixel& p = pixels_[v * width_ + w];
-          if (p.paths > 0) around[count++] = p.u + p.s;
-        }
-      }
-      const auto middle = around.begin() + static_cast<std::ptrdiff_t>(count / 2);
-      std::nth_element(around.begin(), middle, around.begin() + static_cast<std::ptrdiff_t>(count));
-      result[y * width_ + x] = count == 0 ? 0 : *middle;
-    }
+  std::vector<double> means(pixels_.size());
+  std::transform(pixels_.begin(), pixels_.end(), means.begin(), [](const Pixel& p) {
+    return p.paths > 0 ? p.u + p.s : std::numeric_limits<double>::quiet_NaN();
   });
-  return result;
+  return median_around(means, width_);
 }
 
 NoiseShare NoiseMoments::share(double epsilon) const {

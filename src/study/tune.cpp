@@ -155,7 +155,17 @@ class Tuner {
         all[pixel] += unfiltered[part][pixel] * static_cast<float>(shares_[part]);
       }
     }
-    guess_ = median_around(all, width_);
+    guess_.resize(all.size());
+    std::vector<double> component(all.size());
+    for (int c = 0; c < 3; ++c) {
+      for (std::size_t pixel = 0; pixel < all.size(); ++pixel) {
+        component[pixel] = double{all[pixel][c]};
+      }
+      const std::vector<double> medians = median_around(component, width_);
+      for (std::size_t pixel = 0; pixel < all.size(); ++pixel) {
+        guess_[pixel][c] = static_cast<float>(medians[pixel]);
+      }
+    }
   }
 
   // A component of a pixel in two parts.

@@ -108,6 +108,15 @@ std::string with_numbers(std::string bytes, const std::string& name, std::size_t
   return bytes;
 }
 
+void write_tiles(const std::string& path, const Imath::Box2i& window) {
+  Imf::Header header = sample_header(window, window, kRgb);
+  header.setTileDescription({16, 16, Imf::ONE_LEVEL});
+  SamplePixels pixels(window, kRgb);
+  Imf::TiledOutputFile file(path.c_str(), header, 0);
+  file.setFrameBuffer(pixels.buffer);
+  file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
+}
+
 }  // namespace
 
 TEST_CASE("a damaged EXR is a picture or one error, and costs what its length allows") {
@@ -121,14 +130,7 @@ TEST_CASE("a damaged EXR is a picture or one error, and costs what its length al
     write_lines(path, sample_header(window, window, kRgb, compression), kRgb);
     sources.push_back(bytes_of(path));
   }
-  Imf::Header tiled = sample_header(window, window, kRgb);
-  tiled.setTileDescription({16, 16, Imf::ONE_LEVEL});
-  {
-    SamplePixels pixels(window, kRgb);
-    Imf::TiledOutputFile file(path.c_str(), tiled, 0);
-    file.setFrameBuffer(pixels.buffer);
-    file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
-  }
+  write_tiles(path, window);
   sources.push_back(bytes_of(path));
   std::mt19937 random(12);
   std::size_t pictures = 0, refused = 0;
@@ -174,14 +176,7 @@ TEST_CASE("sizes that a file cannot hold are refused before they cost anything")
       with_numbers(lines, "displayWindow", 0, {-0x7fffffff, -0x7fffffff, 0x7fffffff, 0x7fffffff}),
       "the most");
 
-  Imf::Header header = sample_header(window, window, kRgb);
-  header.setTileDescription({16, 16, Imf::ONE_LEVEL});
-  {
-    SamplePixels pixels(window, kRgb);
-    Imf::TiledOutputFile file(path.c_str(), header, 0);
-    file.setFrameBuffer(pixels.buffer);
-    file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
-  }
+  write_tiles(path, window);
   const std::string tiles = bytes_of(path);
   refused(with_numbers(with_numbers(tiles, "tiles", 0, {1, 1}), "dataWindow", 2, {999, 999}),
           "do not fit");

@@ -1,30 +1,9 @@
 // What a glTF file asks for beyond what psf reads is said once, by name.
 #include "catch.h"
-#include "gltf_document.h"
-#include "load_support.h"
+#include "gltf_load.h"
 
 namespace psf::render {
 namespace {
-
-Scene load(const Document& d) {
-  const TempFolder folder;
-  return load_scene(folder.write("s.gltf", d.gltf()));
-}
-
-Failure failure_of(const Document& d) {
-  const TempFolder folder;
-  Failure failure = load_failure(folder.write("s.gltf", d.gltf()));
-  CHECK(!contains(failure.message, "\n"));
-  CHECK(failure.message.size() < 300);
-  return failure;
-}
-
-// How many notes have `part`.
-std::size_t notes(const Scene& scene, const std::string& part) {
-  std::size_t count = 0;
-  for (const std::string& warning : scene.warnings) count += contains(warning, part);
-  return count;
-}
 
 json extension(const char* name, const json& value) {
   return {{"extensions", {{name, value}}}};
