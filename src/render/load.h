@@ -25,8 +25,9 @@ struct SceneOverrides {
 
 // Loads by extension, applies the overrides, validates, computes the hash. A scene without camera
 // gets one that sees all of it. Throws Error{io} for a missing file, Error{bad_input} naming file
-// and place (JSON path, line), Error{limit} for more than 2^27 triangles and spheres, Error{usage}
-// naming the option of a senseless override.
+// and place (line, JSON path), Error{usage} naming the option of a senseless override, Error{limit}
+// for more than 2^27 triangles and spheres, for a scene that is too large, too small or, for its
+// size, too far from the origin, and for a sphere whose radius is 8,192 times a camera's distance.
 [[nodiscard]] Scene load_scene(const std::string& path, const SceneOverrides& overrides = {});
 
 // What a dump, whose positions are floats in world units, keeps of the scene.
