@@ -133,12 +133,12 @@ void run(RenderOptions& options) {
   for (const std::size_t camera : cameras) camera_names.push_back(scene.cameras[camera].name);
   const PictureNames names(options.images, camera_names);
   check_all_files(options, scene.files, names.all({}));
-  if (!options.common.quiet) {
-    for (const std::string& warning : scene.warnings) core::say("note: " + warning);
-  }
   if (!options.output.empty()) {
     check_digits(options, scene);
     writer.emplace(open_writer(options, render::make_head(scene, *integrator, settings)));
+  }
+  if (!options.common.quiet) {
+    for (const std::string& warning : scene.warnings) core::say("note: " + warning);
   }
   const double prepared =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -15,6 +15,9 @@ namespace {
 constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
               kUnsignedInt = 5125, kFloat = 5126;
 
+// Most elements of an accessor without bufferView, which are 0 but for the sparse ones.
+constexpr std::size_t kMaxZeros = std::size_t{1} << 24;
+
 std::size_t size_of(int component_type) {
   return component_type <= kUnsignedByte ? 1 : component_type <= kUnsignedShort ? 2 : 4;
 }
@@ -103,10 +106,13 @@ Accessor accessor_at(GltfLoad& load, const JsonCursor& index) {
   if (const auto normalized = a.json.find("normalized")) a.normalized = normalized->boolean();
   a.components = kComponents[a.json.at("type").choice(kTypes)];
   const std::uint64_t count = a.json.at("count").whole();
-  // Before anything is allocated: an accessor without bufferView may claim any count.
-  if (count > kMaxPrimitives * 3) {
-    throw Error(ErrorCode::limit, fmt::format("{}: {} elements are more than psf takes ({})",
-                                              a.json.where(), count, kMaxPrimitives * 3));
+  // Before anything is allocated: without bufferView no byte of the file stands behind the count.
+  const std::size_t most = a.json.find("bufferView") ? kMaxPrimitives * 3 : kMaxZeros;
+  if (count > most) {
+    throw Error(
+        ErrorCode::limit,
+        fmt::format("{}: {} elements{} are more than psf takes ({})", a.json.where_exactly(), count,
+                    most == kMaxZeros ? " without bufferView" : "", most));
   }
   a.count = static_cast<std::size_t>(count);
   return a;
@@ -161,6 +167,8 @@ std::vector<std::uint32_t> read_indices(GltfLoad& load, const JsonCursor& index)
   const Accessor a = accessor_at(load, index);
   if (a.components != 1 || a.type == kFloat)
     index.fail(fmt::format("accessor {} does not hold indices", index.whole()));
+  if (a.normalized)
+    index.fail(fmt::format("accessor {} is normalized, which indices are not", index.whole()));
   std::vector<std::uint32_t> values(a.count);
   read(load, a, [&](std::size_t i, std::size_t, double value) {
     if (value < 0) index.fail(fmt::format("index {} is negative", i));

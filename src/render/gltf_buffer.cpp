@@ -3,14 +3,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "formats/error.h"
 #include "render/gltf_parts.h"
+#include "render/whole_file.h"
 
 namespace psf::render {
 namespace {
@@ -61,15 +59,11 @@ std::vector<unsigned char> decode_base64(const JsonCursor& uri, std::string_view
 }
 
 std::vector<unsigned char> read_file(const JsonCursor& uri, const std::string& path) {
-  std::error_code ignored;
-  std::ifstream file;
-  if (!fs::is_directory(path, ignored)) file.open(path, std::ios::binary);
-  if (!file.is_open()) {
-    throw Error(ErrorCode::io,
-                fmt::format("{}: {}: {}", uri.where_exactly(), path,
-                            fs::exists(path, ignored) ? "cannot be opened" : "no such file"));
+  try {
+    return read_whole<std::vector<unsigned char>>(path);
+  } catch (const Error& error) {
+    throw Error(error.code(), uri.where_exactly() + ": " + error.what());
   }
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
 const std::vector<unsigned char>& buffer_of(GltfLoad& load, const JsonCursor& index) {

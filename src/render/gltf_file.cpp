@@ -2,15 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "formats/error.h"
 #include "render/gltf_parts.h"
+#include "render/json_file.h"
+#include "render/whole_file.h"
 
 namespace psf::render {
 namespace {
@@ -99,13 +97,9 @@ void check_version(const GltfLoad& load) {
 }  // namespace
 
 void read_gltf_file(GltfLoad& load) {
-  std::ifstream file(load.path, std::ios::binary);
-  if (!file) {
-    throw Error(ErrorCode::io, fmt::format("{}: cannot open: {}", load.path, std::strerror(errno)));
-  }
-  std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  auto bytes = read_whole<std::string>(load.path);
   if (bytes.starts_with("glTF")) bytes = read_glb(load, bytes);
-  load.document = std::make_shared<const nlohmann::json>(parse_json(bytes, load.path));
+  load.document = std::make_shared<const nlohmann::json>(parse_json(std::move(bytes), load.path));
   check_version(load);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/interrupt.h"
 #include "formats/error.h"
 #include "render/gltf_parts.h"
 #include "render/shapes.h"
@@ -120,16 +121,26 @@ void add_primitive(GltfLoad& load, const JsonCursor& primitive, const std::strin
   Mesh all;
   all.name = name;
   all.material = mesh.material;
+  // What is flattened has the normals of its faces.
+  Mesh flat = all;
   for (const Imath::M44d& placement : placements) {
     Mesh copy = mesh;
+    if (placement.determinant() == 0) {
+      copy.normals.clear();
+      for (Vec3& p : copy.positions) p = Vec3(Imath::V3d(p) * placement);
+      append(flat, copy);
+      continue;
+    }
     try {
       transform(copy, placement);
     } catch (const Error& error) {
-      primitive.fail(error.what());
+      primitive.fail("node " + name + ": " + error.what());
     }
     append(all, copy);
   }
-  load.scene.meshes.push_back(std::move(all));
+  for (Mesh* one : {&all, &flat}) {
+    if (!one->positions.empty()) load.scene.meshes.push_back(std::move(*one));
+  }
 }
 
 }  // namespace
@@ -138,6 +149,7 @@ void add_gltf_mesh(GltfLoad& load, const JsonCursor& index, const std::string& n
                    std::span<const Imath::M44d> placements) {
   const JsonCursor mesh = load.element("meshes", index, "mesh");
   load.check_keys(mesh, {"primitives", "weights"});
+  core::throw_if_interrupted("nothing was rendered, nothing is written");
   const JsonCursor primitives = mesh.at("primitives");
   if (placements.empty()) return;
   for (std::size_t i = 0; i < primitives.size(); ++i) {

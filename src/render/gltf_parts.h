@@ -38,6 +38,7 @@ struct GltfLoad {
   int first_material = 0;                    // of the file, in Scene::materials
   int default_material = kNone;              // for primitives without one, made when first needed
   std::size_t triangles = 0;                 // so far
+  std::set<std::uint64_t> nodes;             // that were added
 
   GltfLoad(std::string file, Scene& target) : path(std::move(file)), scene(target) {}
 

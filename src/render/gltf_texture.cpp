@@ -91,7 +91,7 @@ int gltf_texture(GltfLoad& load, const JsonCursor& info, TextureUse use,
     if (problem.empty()) problem = why;
   }
   if (sources.empty()) problem = texture.path() + " names none";
-  load.leave_out("a picture cannot be had and is left out: " + problem, wanted_by);
+  load.leave_out("a picture cannot be had and is left out (" + problem + ")", wanted_by);
   return kNone;
 }
 

@@ -16,7 +16,7 @@ const std::vector<std::string>& integrator_names() {
 
 PathRecord in_world(PathRecord record, const Space& space) {
   if (space.is_world()) return record;
-  record.position = Vec3(space.world(record.position));
+  if (record.has_vertex) record.position = Vec3(space.world(record.position));
   record.distance = space.world_length(record.distance);
   record.hit_distance = space.world_length(record.hit_distance);
   return record;

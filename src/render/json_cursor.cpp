@@ -3,44 +3,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <set>
 
 #include "formats/error.h"
+#include "render/json_file.h"
 
 namespace psf::render {
 namespace {
 
 using nlohmann::json;
 
-// "3:17", both from 1, of the byte at `offset`.
-std::string line_and_column(const std::string& text, std::size_t offset) {
-  const std::string_view before = std::string_view(text).substr(0, std::min(offset, text.size()));
-  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-  const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 = 0
-  return fmt::format("{}:{}", line, before.size() - line_start + 1);
-}
-
-// "syntax error while parsing value - unexpected '}'" of nlohmann's longer message.
-std::string reason(const std::string& what) {
-  std::size_t begin = what.find("] ");
-  begin = begin == std::string::npos ? 0 : begin + 2;
-  const std::size_t column = what.find("column", begin);
-  if (column != std::string::npos && what.find(": ", column) != std::string::npos) {
-    begin = what.find(": ", column) + 2;
-  }
-  return what.substr(begin);
-}
-
+// A value as a message shows it.
 std::string quoted(const json& value) {
-  constexpr std::size_t kMost = 60;
+  constexpr std::size_t kMost = 60, kMostItems = 16;
+  if (value.is_object()) return "an object";
+  const bool is_short =
+      !value.is_array() ||
+      (value.size() <= kMostItems && std::none_of(value.begin(), value.end(), [](const json& item) {
+         return item.is_structured();
+       }));
+  if (!is_short) return "an array";
   std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
   if (text.size() > kMost) text = text.substr(0, kMost) + "...";
   return text;
@@ -61,46 +45,6 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-// The line of a value, from 1, by its path in the document; 0 where the file is no text of JSON.
-std::size_t line_of(const std::string& file, const std::string& path) {
-  struct Around {
-    std::string path;
-    bool is_array;
-    std::size_t items = 0;
-  };
-  std::ifstream in(file, std::ios::binary);
-  std::vector<Around> around;
-  std::string key;
-  std::streamoff end = 0;
-  const auto watch = [&](int, json::parse_event_t event, json& parsed) {
-    using Event = json::parse_event_t;
-    if (event == Event::key) {
-      key = parsed.get<std::string>();
-    } else if (event == Event::object_end || event == Event::array_end) {
-      around.pop_back();
-    } else {
-      std::string place;
-      if (!around.empty()) {
-        Around& a = around.back();
-        place = fmt::format("{}/{}", a.path, a.is_array ? std::to_string(a.items++) : key);
-      }
-      if (place == path) {
-        // What ends a number is read with it.
-        end = in.rdbuf()->pubseekoff(0, std::ios::cur, std::ios::in);
-        if (parsed.is_number()) --end;
-      }
-      if (event != Event::value) around.push_back({std::move(place), event == Event::array_start});
-    }
-    return event != Event::value;  // nothing is kept
-  };
-  if (json::parse(in, watch, false).is_discarded()) return 0;
-  in.clear();
-  in.seekg(0);
-  std::size_t lines = 1;
-  for (std::streamoff k = 0; k < end; ++k) lines += in.get() == '\n' ? 1u : 0u;
-  return lines;
-}
-
 }  // namespace
 
 std::string suggestion(std::string_view word, std::span<const std::string_view> known) {
@@ -114,50 +58,6 @@ std::string suggestion(std::string_view word, std::span<const std::string_view> 
     }
   }
   return text;
-}
-
-json read_json(const std::string& path) {
-  if (std::filesystem::is_directory(path))
-    throw Error(ErrorCode::io, path + ": is a folder, a file is needed");
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
-    throw Error(ErrorCode::io, fmt::format("{}: cannot open: {}", path, std::strerror(errno)));
-  return parse_json({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}, path);
-}
-
-json parse_json(const std::string& text, const std::string& path) {
-  std::vector<std::set<std::string>> keys;  // of the objects around the current place
-  std::string doubled;
-  const auto watch = [&](int, json::parse_event_t event, json& parsed) {
-    if (event == json::parse_event_t::object_start) keys.emplace_back();
-    if (event == json::parse_event_t::object_end) keys.pop_back();
-    if (event == json::parse_event_t::key &&
-        !keys.back().insert(parsed.get<std::string>()).second) {
-      doubled = parsed.get<std::string>();
-    }
-    return true;
-  };
-  try {
-    json document = json::parse(text, watch);
-    if (!doubled.empty()) {
-      throw Error(ErrorCode::bad_input,
-                  fmt::format("{}: the key \"{}\" is twice in one object", path, doubled));
-    }
-    return document;
-  } catch (const json::parse_error& error) {
-    const std::size_t offset = error.byte == 0 ? 0 : error.byte - 1;
-    throw Error(ErrorCode::bad_input,
-                fmt::format("{}:{}: malformed JSON: {}", path, line_and_column(text, offset),
-                            reason(error.what())));
-  } catch (const json::exception& error) {
-    // A number out of range has no place, but its text is in the message, in quotes.
-    const std::string what = reason(error.what());
-    const std::size_t begin = what.find('\'') + 1, end = what.rfind('\'');
-    const bool quoted = begin > 0 && end > begin;
-    const std::size_t offset = quoted ? text.find(what.substr(begin, end - begin)) : 0;
-    throw Error(ErrorCode::bad_input, fmt::format("{}:{}: malformed JSON: {}", path,
-                                                  line_and_column(text, offset), what));
-  }
 }
 
 void JsonCursor::fail(const std::string& problem) const {

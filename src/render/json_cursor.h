@@ -27,14 +27,8 @@ constexpr Range kUnitRange{0, 1, "in [0, 1]"};
 constexpr Range kNonNegative{0, FLT_MAX, ">= 0"};
 constexpr Range kPositive{FLT_MIN, FLT_MAX, "> 0"};
 
-// Reads and parses. Throws Error{io} where the file cannot be read, Error{bad_input} with line and
-// column where it is malformed or an object has the same key twice.
-[[nodiscard]] nlohmann::json read_json(const std::string& path);
-// The same of the text of a file.
-[[nodiscard]] nlohmann::json parse_json(const std::string& text, const std::string& path);
-
-// All getters throw Error{bad_input}: "cornell.json:31: /materials/2/roughness: expected a number in
-// [0, 1], got "shiny"". A cursor points into the document and must not outlive it.
+// All getters throw Error{bad_input}: "cornell.json:31: /materials/2/roughness: expected a number
+// in [0, 1], got "shiny"". A cursor points into the document and must not outlive it.
 class JsonCursor {
  public:
   JsonCursor(const nlohmann::json& root, std::string file)

@@ -35,9 +35,10 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
 
   const auto texture = [&](std::string_view key, TextureUse use) {
     const auto file = json.find(key);
-    return file ? load.textures.load(file->file(), file->text(), use,
-                                     file->where() + ": material \"" + material.name + "\"")
-                : kNone;
+    if (!file) return kNone;
+    return load.textures.load(file->file(), file->text(), use, [&] {
+      return file->where_exactly() + ": material \"" + material.name + "\"";
+    });
   };
   material.reflectance_texture = texture("reflectance_map", TextureUse::reflectance);
   material.emission_texture = texture("emission_map", TextureUse::radiance);

@@ -182,7 +182,7 @@ void add_mesh_file(const JsonCursor& json, int material, bool flipped,
       part = load_fitting(path, [&](Scene& empty) { load_mesh_file(path, empty); });
     } else {
       load_mesh_file(path, part);
-      if (fitting_space(path, part).exact) scene.wanted.exact = true;
+      if (fitting_space(part).exact) scene.wanted.exact = true;
     }
   } catch (const Error& error) {
     throw Error(error.code(), file.where_exactly() + ": " + error.what());
@@ -258,8 +258,8 @@ std::optional<JsonCursor> point_of(const JsonCursor& json, std::size_t kind) {
     case cylinder:
       return json.find("from");
     case mesh_shape: {
-      const auto points = json.items("positions");
-      return points.empty() ? std::nullopt : std::optional(points[0]);
+      const auto points = json.find("positions");
+      return points && points->size() > 0 ? std::optional(points->item(0)) : std::nullopt;
     }
     default:
       return std::nullopt;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/interrupt.h"
 #include "formats/error.h"
 #include "render/load_parts.h"
 
@@ -56,24 +57,25 @@ std::string find_file(const std::string& beside, const std::string& file) {
 }
 
 int TextureTable::load(const std::string& scene_file, const std::string& file, TextureUse use,
-                       const std::string& wanted_by) {
+                       const std::function<std::string()>& wanted_by) {
   const std::string path = find_file(scene_file, file);
   const auto [entry, is_new] = known_.try_emplace({path, use}, kNone);
   if (!is_new) return entry->second;
   scene_.files.push_back(path);
+  core::throw_if_interrupted("nothing was rendered, nothing is written");
   std::error_code ignored;
   if (lenient_ && fs::exists(path, ignored)) {
     const std::string why = Texture::why_unreadable(path);
     if (!why.empty()) {
       scene_.warnings.push_back(
-          fmt::format("{}: {}: {}; the picture is left out", wanted_by, path, why));
+          fmt::format("{}: {}: {}; the picture is left out", wanted_by(), path, why));
       return kNone;
     }
   }
   try {
     scene_.textures.push_back(Texture::load(path, use, scene_.warnings));
   } catch (const Error& error) {
-    throw Error(error.code(), wanted_by + ": " + error.what());
+    throw Error(error.code(), wanted_by() + ": " + error.what());
   }
   entry->second = static_cast<int>(scene_.textures.size()) - 1;
   return entry->second;
@@ -123,6 +125,7 @@ Scene load_scene(const std::string& path, const SceneOverrides& overrides) {
                   path + ": not a kind of scene that psf reads (.json, .obj, .gltf, .glb)");
     }
   });
+  check_scale(path, scene);
   scene.name = fs::path(path).filename().string();
   scale_intensities(scene);
   validate(path, scene);  // first: the automatic camera needs finite geometry

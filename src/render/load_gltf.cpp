@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/interrupt.h"
 #include "formats/error.h"
 #include "render/gltf_parts.h"
 
@@ -58,6 +59,10 @@ void add_node(GltfLoad& load, const JsonCursor& index, const Imath::M44d& parent
   const JsonCursor node = load.element("nodes", index, "node");
   if (depth > kMaxDepth)
     node.fail(fmt::format("more than {} nodes within nodes, or a circle", kMaxDepth));
+  if (!load.nodes.insert(index.whole()).second)
+    index.fail(fmt::format("node {} is in the scene twice; glTF has a tree of nodes, copy it",
+                           index.whole()));
+  core::throw_if_interrupted("nothing was rendered, nothing is written");
   load.check_keys(node, {"camera", "children", "skin", "matrix", "mesh", "rotation", "scale",
                          "translation", "weights"});
   if (is_hidden(load, node)) return;

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "formats/error.h"
+#include "render/json_file.h"
 #include "render/json_parts.h"
 
 namespace psf::render {
@@ -39,8 +40,8 @@ Environment read_environment(const JsonCursor& json, JsonLoad& load) {
   json.check_keys({"radiance", "map", "rotation"});
   Environment environment;
   if (const auto map = json.find("map")) {
-    environment.texture =
-        load.textures.load(map->file(), map->text(), TextureUse::radiance, map->where());
+    environment.texture = load.textures.load(map->file(), map->text(), TextureUse::radiance,
+                                             [&] { return map->where_exactly(); });
     environment.radiance = Rgb(1);
   }
   if (const auto radiance = json.find("radiance"))

@@ -35,10 +35,10 @@ class TextureTable {
   explicit TextureTable(Scene& scene, bool lenient = false) : scene_(scene), lenient_(lenient) {}
   // Index in Scene::textures; kNone for a picture that is left out. `file` is relative to the
   // folder of `scene_file`; where that name does not exist, backslashes and another case are tried,
-  // as scenes from other systems have them. The error of a picture that cannot be had starts with
-  // `wanted_by`, "room.json: /materials/2/reflectance_map".
+  // as scenes from other systems have them. The error or note of a picture that cannot be had
+  // starts with what `wanted_by` returns, "room.json:31: /materials/2/reflectance_map".
   int load(const std::string& scene_file, const std::string& file, TextureUse use,
-           const std::string& wanted_by);
+           const std::function<std::string()>& wanted_by);
 
  private:
   Scene& scene_;
@@ -53,9 +53,11 @@ class TextureTable {
 // `space`, or where `box`, in it, is far from its origin, one around the middle of the box.
 [[nodiscard]] Space moved_space(Space space, const Imath::Box3d& box);
 // The space that a scene should be loaded in, from the bounds of what was loaded in its own; that
-// one where it fits. Throws Error{limit} for a scene that is too large, too small or, for its size,
-// too far from the origin.
-[[nodiscard]] Space fitting_space(const std::string& path, const Scene& scene);
+// one where it fits.
+[[nodiscard]] Space fitting_space(const Scene& scene);
+// Throws Error{limit} for a scene that is too large, too small or, for its size, too far from the
+// origin.
+void check_scale(const std::string& path, const Scene& scene);
 // Warns of vertices that lie so far from the origin that a dump loses their digits, and of shapes
 // so far from the middle of the scene that the scene does.
 void note_lost_digits(const std::string& path, Scene& scene);

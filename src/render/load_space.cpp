@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/interrupt.h"
 #include "formats/error.h"
 #include "render/load_parts.h"
 
@@ -105,7 +106,7 @@ Space moved_space(Space space, const Imath::Box3d& box) {
   return space;
 }
 
-Space fitting_space(const std::string& path, const Scene& scene) {
+Space fitting_space(const Scene& scene) {
   if (scene.wanted.exact) return scene.wanted;
   const Imath::Box3d box = bounds_of(scene);
   Space space = moved_space(scene.space, box);
@@ -118,8 +119,12 @@ Space fitting_space(const std::string& path, const Scene& scene) {
     space.exact = true;
     return space;
   }
-  check_limits(path, space, center, half);
   return space;
+}
+
+void check_scale(const std::string& path, const Scene& scene) {
+  const Imath::Box3d box = bounds_of(scene);
+  if (!box.isEmpty()) check_limits(path, scene.space, box.center(), largest(box.size()) / 2);
 }
 
 double WorldDigits::steps() const {
@@ -185,8 +190,14 @@ Scene load_fitting(const std::string& path, const std::function<void(Scene&)>& l
       space.exact = true;
       continue;
     }
-    space = fitting_space(path, scene);
-    if (space == scene.space || tries == kMostTries) return scene;
+    space = fitting_space(scene);
+    if (space == scene.space) return scene;
+    core::throw_if_interrupted("nothing was rendered, nothing is written");
+    if (tries == kMostTries) {
+      throw Error(ErrorCode::limit, path +
+                                        ": no place and size to compute in is found for the "
+                                        "scene; move it to the origin, or scale it");
+    }
   }
 }
 

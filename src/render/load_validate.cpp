@@ -169,9 +169,13 @@ class Validation {
 
   void check(const Sphere& sphere) const {
     const Vec3& c = sphere.center;
-    if (!in_space(c) || !(sphere.radius > 0 && sphere.radius <= kFarthest)) {
-      fail(fmt::format("sphere {}: centre ({}, {}, {}) and radius {} are not finite or not above 0",
-                       sphere.name, c.x, c.y, c.z, sphere.radius));
+    if (!is_finite(c) || !(sphere.radius > 0 && std::isfinite(sphere.radius))) {
+      fail(fmt::format("sphere {}: its centre is not finite, or its radius not above 0",
+                       sphere.name));
+    }
+    if (!in_space(c) || sphere.radius > kFarthest) {
+      fail(fmt::format("sphere {}: is too large, or too far away for the size of the scene",
+                       sphere.name));
     }
   }
 

@@ -118,9 +118,18 @@ class MtlReader {
   }
 
   float read_number(float least, float most) {
-    const float value = lines_.number(lines_.statement());
+    float value = lines_.number(lines_.statement());
+    if (!lines_.word().empty())
+      left_out_.add(fmt::format("what follows the number of {}", lines_.statement()));
+    drop_rounding(value, least, most);
     check_range(value, least, most);
     return value;
+  }
+
+  // What a converter rounded is no error.
+  static void drop_rounding(float& value, float least, float most) {
+    if (value > most && value < most * 1.0001f) value = most;
+    if (least == 0 && value < 0 && value > -0.0001f) value = 0;
   }
 
   void check_range(float value, float least, float most) const {
@@ -150,9 +159,7 @@ class MtlReader {
     if (xyz) colour = from_xyz(colour);
     for (int c = 0; c < 3; ++c) {
       float& value = colour[c];
-      // What a converter rounded is no error.
-      if (value > most && value < most * 1.0001f) value = most;
-      if (value < 0 && value > -0.0001f) value = 0;
+      drop_rounding(value, 0, most);
       check_range(value, 0, most);
     }
     return colour;

@@ -81,8 +81,9 @@ Material to_material(const MtlMaterial& mtl, const std::string& path, TextureTab
   const auto load = [&](const MtlMaterial::Map& map, TextureUse use) {
     if (map.file.empty()) return kNone;
     const std::string found = find_named(path, map.file);
-    return textures.load(path, found.empty() ? map.file : found, use,
-                         fmt::format("{}:{}: material {}", path, map.line, mtl.name));
+    return textures.load(path, found.empty() ? map.file : found, use, [&] {
+      return fmt::format("{}:{}: material {}", path, map.line, mtl.name);
+    });
   };
   if (material.kind == MaterialKind::diffuse || material.kind == MaterialKind::coat ||
       material.kind == MaterialKind::gloss)

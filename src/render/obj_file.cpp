@@ -75,7 +75,7 @@ class ObjReader {
       ++numbers;
     }
     if (numbers < 3) fail_count("vertex", number, numbers, 3);
-    if (numbers == 4 && weight_ != 1) left_out_.add("weights of vertices");
+    if ((numbers == 4 || numbers == 7) && weight_ != 1) left_out_.add("weights of vertices");
     if (numbers == 5) fail_count("vertex", number, numbers, 6);
     if (numbers >= 6) left_out_.add("vertex colours");
     file_.positions.push_back(space_.local(p));
@@ -99,9 +99,12 @@ class ObjReader {
     const auto number = static_cast<std::size_t>(++kinds_[2].count);
     std::array<float, 3> n{};
     int numbers = 0;
-    for (std::string_view word = lines_.word(); !word.empty() && numbers < 3; word = lines_.word())
-      n[static_cast<std::size_t>(numbers++)] = lines_.to_number(word, "normal", number);
+    for (std::string_view word = lines_.word(); !word.empty(); word = lines_.word(), ++numbers) {
+      const float value = lines_.to_number(word, "normal", number);
+      if (numbers < 3) n[static_cast<std::size_t>(numbers)] = value;
+    }
     if (numbers < 3) fail_count("normal", number, numbers, 3);
+    if (numbers > 3) left_out_.add("a fourth number of normals");
     file_.normals.emplace_back(n[0], n[1], n[2]);
   }
 

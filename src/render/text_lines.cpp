@@ -4,40 +4,23 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <cfloat>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 
+#include "core/interrupt.h"
 #include "formats/error.h"
 #include "render/load_parts.h"
+#include "render/whole_file.h"
 
 namespace psf::render {
 namespace {
 
 constexpr std::string_view kSpace = " \t\v\f";
+constexpr std::size_t kLinesBetweenLooks = std::size_t{1} << 16;  // for an interrupt
 constexpr std::size_t kMostNames = 16;  // a file of something else has a name in every line
-
-std::string read_text(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored))
-    throw Error(ErrorCode::io, path + ": is a folder");
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
-    throw Error(ErrorCode::io, fmt::format("{}: cannot open: {}", path, std::strerror(errno)));
-  std::string text;
-  if (file.seekg(0, std::ios::end)) {
-    text.resize(static_cast<std::size_t>(file.tellg()));
-    file.seekg(0);
-    file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  }
-  if (!file)
-    throw Error(ErrorCode::io, fmt::format("{}: cannot read: {}", path, std::strerror(errno)));
-  return text;
-}
 
 // Bytes of the UTF-8 character at the front, 0 where there is none.
 std::size_t utf8_length(std::string_view text) {
@@ -111,7 +94,7 @@ bool parse(std::string_view word, double& value) {
 
 }  // namespace
 
-TextLines::TextLines(const std::string& path) : path_(path), text_(read_text(path)) {
+TextLines::TextLines(const std::string& path) : path_(path), text_(read_whole<std::string>(path)) {
   if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);
   if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF")) {
     throw Error(ErrorCode::bad_input,
@@ -131,6 +114,8 @@ bool TextLines::next() {
   while (at_ < text_.size()) {
     const std::size_t begin = at_;
     line_ = ++lines_;
+    if (line_ % kLinesBetweenLooks == 0)
+      core::throw_if_interrupted("nothing was rendered, nothing is written");
     bool comment = false;
     for (;;) {
       const std::size_t end = find_line_end(at_);
@@ -139,6 +124,8 @@ bool TextLines::next() {
       const std::size_t breaks = text_.compare(end, 2, "\r\n") == 0 ? 2 : 1;
       at_ = std::min(end + breaks, text_.size());
       if (comment || rest_.empty() || text_[end - 1] != '\\' || at_ == text_.size()) break;
+      if (rest_.find(" #") != std::string_view::npos || rest_.find("\t#") != std::string_view::npos)
+        break;  // the backslash is part of a comment
       std::fill(text_.begin() + static_cast<std::ptrdiff_t>(end) - 1,
                 text_.begin() + static_cast<std::ptrdiff_t>(at_), ' ');
       ++lines_;

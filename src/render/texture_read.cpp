@@ -1,7 +1,9 @@
 // Textures out of picture files, by OpenImageIO.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <dlfcn.h>
 #include <fmt/format.h>
+#include <png.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -231,3 +233,23 @@ Texture Texture::read(const std::string& name, std::span<const unsigned char> by
 }
 
 }  // namespace psf::render
+
+namespace {
+
+png_error_ptr said = nullptr;  // of whoever set one last
+
+[[noreturn]] void end_reading(png_structp png, png_const_charp text) {
+  said(png, text);
+  png_longjmp(png, 1);
+}
+
+}  // namespace
+
+// In place of libpng's: OpenImageIO's function for errors returns, and then libpng prints them.
+extern "C" void png_set_error_fn(png_structrp png, png_voidp pointer, png_error_ptr error,
+                                 png_error_ptr warning) {
+  static auto* const set = reinterpret_cast<decltype(&png_set_error_fn)>(
+      ::dlsym(RTLD_NEXT, "png_set_error_fn"));  // NOLINT: so POSIX has it
+  if (error != nullptr) said = error;
+  set(png, pointer, error != nullptr ? end_reading : nullptr, warning);
+}

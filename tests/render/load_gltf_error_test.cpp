@@ -96,7 +96,7 @@ TEST_CASE("names of files are those of the disk, escaped or not", "[load][gltf]"
     json whole = triangle().root;
     whole["buffers"] = {{{"byteLength", 1}, {"uri", uri}}};
     CHECK(contains(load_failure(folder.write("s.gltf", whole.dump())).message,
-                   "s.gltf: /buffers/0/uri: "));
+                   "s.gltf:1: /buffers/0/uri: "));
   }
   // Text that is not UTF-8 is no JSON; the place is said.
   CHECK(contains(load_failure(folder.write("s.gltf", "{\"asset\":\n {\"x\": \"\xE9\"}}")).message,
@@ -172,7 +172,7 @@ TEST_CASE("a number of the wrong type or range is an error at its place", "[load
     wrong.root[json::json_pointer(pointer)] = value;
     const Failure failure = failure_of(wrong);
     CHECK(failure.code == ErrorCode::bad_input);
-    CHECK(failure.message.find("s.gltf: " + pointer) == 0);
+    CHECK(failure.message.find("s.gltf:1: " + pointer) == 0);
   }
   // The specification lets whole numbers be written so.
   Document whole = triangle();

@@ -160,8 +160,8 @@ TEST_CASE("a picture that psf does not read is left out, and another takes its p
   CHECK(scene.materials.at(0).reflectance_texture == kNone);
   CHECK(is_black(scene.materials.at(0).emission));  // a body does not glow for want of a picture
   CHECK(notes(scene,
-              "a picture cannot be had and is left out: image 0, a data URI of image/ktx2: "
-              "psf reads no KTX2 pictures: /materials/0 (oak): base colour and 1 more") == 1);
+              "a picture cannot be had and is left out (image 0, a data URI of image/ktx2: "
+              "psf reads no KTX2 pictures): /materials/0 (oak): base colour and 1 more") == 1);
   for (const json& texture :
        {json{{"source", 1}, {"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}},
         json{{"extensions", {{"EXT_texture_webp", {{"source", 1}}}}}}, json{{"source", 1}}}) {

@@ -1,5 +1,6 @@
 // The JSON scene file: where each error says it is.
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include "catch.h"
 #include "load_support.h"
@@ -89,6 +90,32 @@ TEST_CASE("an error of the JSON scene names file and JSON path", "[load][json]")
   CHECK(message_of("[1, 2]") == "s.json:1: /: expected an object, got [1,2]");
 }
 
+TEST_CASE("values within values end somewhere", "[load][json]") {
+  const auto nested = [](std::size_t depth) {
+    return "{\"shapes\":\n" + std::string(depth, '[') + std::string(depth, ']') + "}";
+  };
+  CHECK(message_of(nested(400)) == "s.json:2: /shapes/0: expected an object, got an array");
+  CHECK(contains(message_of(nested(100'000)), "s.json:2:"));
+  CHECK(contains(message_of(nested(100'000)), "more than 512 values within values"));
+}
+
+TEST_CASE("a scene is a regular file, and so is what it names", "[load][json]") {
+  const TempFolder folder;
+  const std::string pipe = folder.write("pipe.json", "");
+  std::filesystem::remove(pipe);
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  CHECK(load_failure(pipe).code == ErrorCode::io);
+  CHECK(contains(load_failure(pipe).message, "pipe.json: is no regular file"));
+  for (const char* name : {"m.gltf", "m.glb", "m.obj"}) {
+    std::filesystem::create_directory(std::filesystem::path(pipe).parent_path() / name);
+    const Failure failure = load_failure(folder.write(
+        "s.json", with_shapes(std::string(R"({"shape": "mesh", "file": ")") + name + "\"}")));
+    CHECK(failure.code == ErrorCode::io);
+    CHECK(failure.message ==
+          std::string("s.json:2: /shapes/0/file: ") + name + ": is a folder, a file is needed");
+  }
+}
+
 TEST_CASE("malformed JSON is named with line and column", "[load][json]") {
   CHECK(contains(message_of("{\n  \"materials\": [\n    }\n"), "s.json:3:5: malformed JSON: "));
   CHECK(contains(message_of("{\"a\": 1"), "s.json:1:8: malformed JSON: "));
@@ -96,20 +123,20 @@ TEST_CASE("malformed JSON is named with line and column", "[load][json]") {
   CHECK(contains(message_of("{\n\"a\": 1e999}"), "s.json:2:6: malformed JSON: number overflow"));
   CHECK(contains(message_of("{\n\"caf\xE9\": 1}"), "s.json:2:6: malformed JSON: "));
   CHECK(message_of(R"({"materials": [{"name": "a", "name": "b"}]})") ==
-        "s.json: the key \"name\" is twice in one object");
+        "s.json:1:35: the key \"name\" is twice in one object");
 }
 
 TEST_CASE("a texture that is not there names the material that wants it", "[load][json]") {
   const std::string message = message_of(
       R"({"materials": [{"name": "oak", "reflectance_map": "wood.png"}]})", ErrorCode::io);
   CHECK(message ==
-        "s.json: /materials/0/reflectance_map: material \"oak\": wood.png: no such picture");
+        "s.json:1: /materials/0/reflectance_map: material \"oak\": wood.png: no such picture");
   CHECK(message_of(R"({"environment": {"map": "sky.exr"}})", ErrorCode::io) ==
-        "s.json: /environment/map: sky.exr: no such picture");
+        "s.json:1: /environment/map: sky.exr: no such picture");
   CHECK(message_of(with_shapes(R"({"shape": "mesh", "file": "bunny.obj"})"), ErrorCode::io) ==
-        "s.json: /shapes/0/file: bunny.obj: cannot open: No such file or directory");
+        "s.json:2: /shapes/0/file: bunny.obj: cannot open: No such file or directory");
   CHECK(message_of(with_shapes(R"({"shape": "mesh", "file": "bunny.ply"})")) ==
-        "s.json: /shapes/0/file: bunny.ply: not a kind of mesh file that psf reads (.obj, .gltf, "
+        "s.json:2: /shapes/0/file: bunny.ply: not a kind of mesh file that psf reads (.obj, .gltf, "
         ".glb)");
 }
 
@@ -122,7 +149,7 @@ TEST_CASE("more copies than memory are a limit, told before any is made", "[load
               R"({"shape": "sphere", "material": "white", "center": [0,0,0], "radius": 1, )" +
               grid + "}"),
           ErrorCode::limit),
-      "s.json: /shapes/0/repeat/1/count: 4000 copies of 4000 are more than psf takes"));
+      "s.json:3: /shapes/0/repeat/1/count: 4000 copies of 4000 are more than psf takes"));
   CHECK(contains(
       message_of(
           with_shapes(R"({"shape": "cylinder", "material": "white", "from": [0,0,0], "to": [0,1,0],

@@ -130,6 +130,10 @@ TEST_CASE("every number of a library is checked where it stands", "[load][mtl]")
           "s.mtl:2: " + name + " is -0.5, expected a number in [0, 1]");
     CHECK(failure_of(name + " 7") == "s.mtl:2: " + name + " is 7, expected a number in [0, 1]");
   }
+  for (const std::string name : {"d", "Tr", "Pr", "Pm"}) {  // what a converter rounded
+    CHECK(failure_of(name + " 1.000001").empty());
+    CHECK(failure_of(name + " -0.00001").empty());
+  }
   CHECK(failure_of("Ni 0.5") == "s.mtl:2: Ni is 0.5, expected a number in [1, 10]");
   CHECK(failure_of("illum 1.5") == "s.mtl:2: illum is no whole number");
   CHECK(failure_of("illum 11") == "s.mtl:2: illum is 11, expected a number in [0, 10]");
@@ -163,6 +167,9 @@ TEST_CASE("what a library says and the picture does not show is named once", "[l
                   "decal d.png\nrefl -type sphere r.png\nmap_Ns s.png\nmap_Ks s.png\nmap_d a.png\n"
                   "map_aat on\nmap_Pr p.png\nbump c.png") ==
       "bump, map_Bump, map_bump, norm, disp, decal, refl, map_Ns, map_Ks, map_d, map_aat, map_Pr");
+  CHECK(left_out_of("Ni 1.45 1.45\nillum 2 3\nd 1 x\nKd 1 1 1 # white") ==
+        "what follows the number of Ni, what follows the number of illum, what follows the number "
+        "of d");
   CHECK(left_out_of("Ps 0.5\nPc 0\nPcr 0.1\naniso 0.2\nanisor 0\nunheard of") ==
         "Ps, Pcr, aniso, unheard");
   CHECK(left_out_of("map_Kd -s 2 2 2 -o 0 1 -t 1 -mm 0.1 1 -clamp on -blendu off -blendv off "

@@ -236,6 +236,13 @@ TEST_CASE("a byte order mark, any line end and continued lines hide nothing", "[
         "s.obj: the text is UTF-16, save it as UTF-8 or plain ASCII");
 }
 
+TEST_CASE("a backslash at the end of a comment continues nothing", "[load][obj]") {
+  const TempFolder folder;
+  const Scene scene =
+      load_scene(folder.write("s.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0 # the corner \\\nf 1 2 3\n"));
+  CHECK(scene.meshes.at(0).triangles.size() == 1);
+}
+
 TEST_CASE("what an OBJ file says and the picture does not show is named once", "[load][obj]") {
   const Scene scene = obj_scene(
       "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nv 0 0 1 0.5\nvp 0.5 0.5\nvp 1 1\ns 1\n"
@@ -245,6 +252,8 @@ TEST_CASE("what an OBJ file says and the picture does not show is named once", "
               "faces without normals, faces of one or two corners, l, p, curv, end, lod, "
               "usemap, mg"));
   CHECK(scene.warnings.size() == 2);
+  CHECK(warns(obj_scene("v 0 0 0\nv 1 0 0\nv 0 1 0 0.5 1 0 0\nvn 0 0 1 2\nf 1 2 3\n"),
+              "left out: weights of vertices, vertex colours, a fourth number of normals"));
   // What changes nothing is not told of.
   const Scene quiet = obj_scene(
       "v 0 0 0 1.0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvt 0 0 0\no a\ng b c\n"

@@ -206,16 +206,18 @@ TEST_CASE("a dump of a scene of any size and anywhere has world units", "[scale]
   const auto positions = tests::values<Vec3>(expected, "position");
   const auto distances = tests::values<float>(expected, "distance");
   const auto hits = tests::values<float>(expected, "hit_distance");
+  REQUIRE(std::count(positions.begin(), positions.end(), Vec3(0, 0, 0)) > 0);
   for (const Move& move : kMoves) {
     const tests::Columns found = dump(move);
     const auto moved = tests::values<Vec3>(found, "position");
     const auto far = tests::values<float>(found, "distance");
     const auto hit = tests::values<float>(found, "hit_distance");
-    std::size_t wrong = 0;
+    std::size_t wrong = 0, misplaced = 0;
     for (std::size_t i = 0; i < positions.size(); ++i) {
       const V3d right = move(V3d(positions[i]));
       const double reach = std::max({std::abs(right.x), std::abs(right.y), std::abs(right.z)});
       const bool has_vertex = positions[i] != Vec3(0, 0, 0);
+      if (!has_vertex && moved[i] != Vec3(0, 0, 0)) ++misplaced;
       const double off = (V3d(moved[i]) - right).length();
       // Rays start off a surface by some 2^-19 of its coordinates, so what mirrors show shifts.
       const double slack = 2e-5 * move.scale + std::min(reach * 0x1p-17, 2e-4 * move.scale);
@@ -228,6 +230,7 @@ TEST_CASE("a dump of a scene of any size and anywhere has world units", "[scale]
       wrong += has_vertex && !(near && long_right && hit_right) ? 1u : 0u;
     }
     INFO(move.scale << " at " << triple(move.offset));
+    CHECK(misplaced < positions.size() / 50);
     CHECK(wrong < positions.size() / 50);  // what a ball shows of an edge may be another surface
   }
 }
@@ -288,6 +291,19 @@ TEST_CASE("a shape that is tiny beside its distance from the rest is named", "[s
       contains(scene.warnings[0],
                "smaller than 64 steps of a float where it is, so that its form is lost: mesh hut, "
                "1 across, 4e+06 from the middle"));
+}
+
+TEST_CASE("a file that is too small for a scene is none where its place makes it larger",
+          "[scale]") {
+  const TempFolder folder;
+  folder.write("tiny.obj", "v 0 0 0\nv 2e-31 0 0\nv 0 2e-31 0\nf 1 2 3\n");
+  CHECK(load_failure(folder.write("t.obj", "v 0 0 0\nv 2e-31 0 0\nv 0 2e-31 0\nf 1 2 3\n")).code ==
+        ErrorCode::limit);
+  const Scene scene = load_scene(folder.write(
+      "s.json",
+      R"({"shapes": [{"shape": "mesh", "file": "tiny.obj", "transform": {"scale": 1e31}}]})"));
+  CHECK(area_of(scene.meshes.at(0)) * std::ldexp(1.0, 2 * scene.space.exponent) ==
+        Approx(2).epsilon(1e-6));
 }
 
 TEST_CASE("scenes beyond the range of floats and doubles are refused by name", "[scale]") {

@@ -146,11 +146,6 @@ void run(const CompareOptions& options) {
   const film::Picture reference = film::read_picture(
       options.reference, {options.reference_layer, options.layer, "--reference-layer"});
   const std::string note = film::check_comparable(picture, reference);
-  if (!options.common.quiet) {
-    print_notes(picture.notes);
-    print_notes(reference.notes);
-    if (!note.empty()) print_notes({note});
-  }
   std::vector<study::Choice> choices;
   for (const std::string& text : options.regions) {
     choices.push_back({parse_region(text, picture), report.trim});
@@ -160,6 +155,9 @@ void run(const CompareOptions& options) {
     choices.push_back({std::nullopt, report.trim});
     report.rows.push_back({});
   }
+  print_notes(picture.notes, options.common.quiet);
+  print_notes(reference.notes, options.common.quiet);
+  if (!note.empty()) print_notes({note}, options.common.quiet);
   const study::Errors errors =
       study::Reference(reference.colors, reference.width, options.settings).errors(picture.colors);
   for (std::size_t k = 0; k < choices.size(); ++k) report.rows[k].values = errors.mean(choices[k]);

@@ -20,6 +20,7 @@
 #include "core/unfinished.h"
 #include "filter_options.h"
 #include "formats/error.h"
+#include "notes.h"
 #include "parameter_lists.h"
 #include "study/analytic.h"
 #include "study/converge_file.h"
@@ -87,7 +88,8 @@ void refuse_to_overwrite(const std::string& folder) {
 void run_dumps(const ConvergeOptions& options, filter::TermSet asked) {
   std::vector<filter::Parameters> sets = all_sets(options.lists);
   const study::Dump dump(options.inputs.front());
-  const StudyFolder folder(options.study, dump, options.common.quiet);
+  std::vector<std::string> notes;
+  const StudyFolder folder(options.study, dump, notes);
   refuse_to_overwrite(folder.path());
   if (folder.passes().first != 0) {
     throw Error(ErrorCode::usage, "--passes: a convergence study begins with the first pass");
@@ -105,7 +107,7 @@ void run_dumps(const ConvergeOptions& options, filter::TermSet asked) {
   report.reference = study::describe_reference(options.study.reference, folder.reference_picture());
   for (const std::string& path : options.inputs) {
     const study::Dump replicate(path);
-    fit_terms(replicate, sets, asked, options.common.quiet);
+    fit_terms(replicate, sets, asked, notes);
     report.inputs.push_back(
         study::describe_input(replicate, {0, folder.passes().last}, folder.camera()));
   }
@@ -122,6 +124,7 @@ void run_dumps(const ConvergeOptions& options, filter::TermSet asked) {
     for (const std::uint64_t n : convergence.n) names.push_back(study::picture_name(series, n));
   }
   folder.make(std::move(inputs), names, options.common.json);
+  print_notes(notes, options.common.quiet);
   core::Progress progress("converge", kProgressSteps, options.common.quiet);
   keep_progress(convergence, progress);
   if (options.study.pictures) {

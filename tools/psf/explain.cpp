@@ -15,6 +15,7 @@
 #include "core/progress.h"
 #include "explain_report.h"
 #include "filter_options.h"
+#include "notes.h"
 #include "option_values.h"
 #include "pass_range.h"
 #include "study/explain/explain_ply.h"
@@ -77,7 +78,9 @@ void run(const ExplainOptions& options, filter::TermSet asked) {
   check_files({options.input}, {options.common.json, options.ply});
   const study::Dump dump(options.input);
   request.camera = camera_of(options, dump);
-  fit_terms(dump, {&request.parameters, 1}, asked, options.common.quiet);
+  std::vector<std::string> notes;
+  fit_terms(dump, {&request.parameters, 1}, asked, notes);
+  print_notes(notes, options.common.quiet);
 
   core::Progress bar("explain", kProgressSteps, options.common.quiet);
   request.on_progress = [&bar](std::uint64_t done, std::uint64_t total) {

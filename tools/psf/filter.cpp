@@ -20,6 +20,7 @@
 #include "filter_options.h"
 #include "filter_report.h"
 #include "formats/appender.h"
+#include "notes.h"
 #include "pass_range.h"
 #include "picture_names.h"
 #include "tuned.h"
@@ -197,12 +198,14 @@ void run(const FilterOptions& options, filter::TermSet asked) {
   run.with_noise = !options.common.json.empty();
   if (options.follow) wait_for_first_pass(options.input);
   study::Dump dump(options.input);
-  fit_terms(dump, {&run.parameters, 1}, asked, options.common.quiet);
+  std::vector<std::string> notes;
+  fit_terms(dump, {&run.parameters, 1}, asked, notes);
   check_layers(dump, options.layers, run.layers);
   const std::uint64_t last = run.passes.last.value_or(dump.pass_bounds().size() - 1);
   run.snapshots =
       snapshots_of(options.snapshots, last > run.passes.first ? last - run.passes.first : 0);
   PictureWriter writer(options, dump, run);
+  print_notes(notes, options.common.quiet);
 
   FilterReport report;
   report.input = options.input;

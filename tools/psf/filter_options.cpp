@@ -72,12 +72,12 @@ filter::TermSet asked_terms(const CLI::App& command) {
 }
 
 void fit_terms(const study::Dump& dump, std::span<filter::Parameters> sets, filter::TermSet asked,
-               bool quiet) {
+               std::vector<std::string>& notes) {
   const std::string note = study::switch_off_missing(dump, sets, asked);
   for (const filter::Parameters& set : sets) {
-    static_cast<void>(dump.select(set, false));  // an error is one line, without notes before it
+    static_cast<void>(dump.select(set, false));  // throws where what was asked for is missing
   }
-  if (!note.empty() && !quiet) core::say("note: " + note);
+  if (!note.empty()) notes.push_back(note);
 }
 
 filter::Parameters parameters_of(const ParameterOptions& options) {

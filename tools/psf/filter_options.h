@@ -42,9 +42,10 @@ struct FilterOptions : ParameterOptions {
 
 // The terms that the command line gives; those that it leaves at their default are not among them.
 [[nodiscard]] filter::TermSet asked_terms(const CLI::App& command);
-// Switches off, in all sets, what the dump cannot serve and nobody asked for, with a note.
+// Switches off, in all sets, what the dump cannot serve and nobody asked for; what is to be said of
+// it is added to `notes`, for when all else was checked: an error is one line.
 void fit_terms(const study::Dump& dump, std::span<filter::Parameters> sets, filter::TermSet asked,
-               bool quiet);
+               std::vector<std::string>& notes);
 // The layers that a list, "all" or "none" names. Throws Error{usage} for an unknown name.
 [[nodiscard]] study::PictureLayers layers_of(const std::string& text);
 

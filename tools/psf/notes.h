@@ -8,7 +8,8 @@
 
 namespace psf::tools {
 
-inline void print_notes(const std::vector<std::string>& notes) {
+inline void print_notes(const std::vector<std::string>& notes, bool quiet) {
+  if (quiet) return;
   for (const std::string& note : notes) core::say("note: " + note);
 }
 

@@ -59,7 +59,8 @@ std::size_t find_camera(const study::Dump& dump, const std::string& name) {
                           fmt::join(names, ", ")));
 }
 
-StudyFolder::StudyFolder(const StudyOptions& options, const study::Dump& dump, bool quiet)
+StudyFolder::StudyFolder(const StudyOptions& options, const study::Dump& dump,
+                         std::vector<std::string>& notes)
     : options_(options),
       passes_(parse_passes(options.passes)),
       metric_(study::parse_metric(options.metric)),
@@ -82,10 +83,8 @@ StudyFolder::StudyFolder(const StudyOptions& options, const study::Dump& dump, b
   camera.top = image.top;
   camera.path = dump.reader().path();
   const std::string note = film::check_comparable(image, camera);
-  if (!quiet) {
-    print_notes(image.notes);
-    if (!note.empty()) print_notes({note});
-  }
+  notes.insert(notes.end(), image.notes.begin(), image.notes.end());
+  if (!note.empty()) notes.push_back(note);
   reference_ = std::move(image.colors);
   width_ = image.width;
   height_ = image.height;
@@ -105,12 +104,15 @@ void StudyFolder::make(std::vector<std::string> inputs, const std::vector<std::s
   if (options_.pictures && !is_there) outputs.push_back(file("reference.exr"));
   inputs.push_back(options_.reference);
   core::check_apart(inputs, outputs);
+  // Nothing is made where --json cannot be; it may lie in the folder itself.
+  const bool json_is_inside = std::filesystem::path(json).parent_path() == options_.folder;
+  if (!json_is_inside) check_files({}, {json});
   std::filesystem::create_directories(options_.folder, error);
   if (!std::filesystem::is_directory(options_.folder)) {
     throw Error(ErrorCode::io, fmt::format("{}: cannot be made as a folder: {}; give -o another",
                                            options_.folder, error.message()));
   }
-  check_files({}, {json});
+  if (json_is_inside) check_files({}, {json});
 }
 
 void StudyFolder::write_reference() const {

@@ -30,10 +30,11 @@ void add_study_options(CLI::App& command, StudyOptions& options, bool required);
 
 class StudyFolder {
  public:
-  // Reads the reference, tells its notes unless `quiet`, and makes the folder. Throws Error{usage}
-  // for a camera that is not there or not named though there are several, Error{bad_input} where
-  // the reference has another size.
-  StudyFolder(const StudyOptions& options, const study::Dump& dump, bool quiet);
+  // Reads the reference; what is to be said of it is added to `notes`. Throws Error{usage} for a
+  // camera that is not there or not named though there are several, Error{bad_input} where the
+  // reference has another size.
+  StudyFolder(const StudyOptions& options, const study::Dump& dump,
+              std::vector<std::string>& notes);
 
   // The names, in the folder, are apart from the inputs and from --json (check_files()); then it is
   // made where it is missing.

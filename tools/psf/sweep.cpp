@@ -13,6 +13,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "filter_options.h"
+#include "notes.h"
 #include "parameter_lists.h"
 #include "pass_range.h"
 #include "study/sweep_file.h"
@@ -87,8 +88,9 @@ void run(const SweepOptions& options, filter::TermSet terms) {
   const core::ThreadLimit threads(options.common.threads);
   std::vector<filter::Parameters> asked = all_sets(options.lists);
   const study::Dump dump(options.input);
-  fit_terms(dump, asked, terms, options.common.quiet);
-  const StudyFolder folder(options.study, dump, options.common.quiet);
+  std::vector<std::string> notes;
+  fit_terms(dump, asked, terms, notes);
+  const StudyFolder folder(options.study, dump, notes);
   study::SweepFile file(
       folder.path(),
       {kVersion, study::describe_input(dump, folder.passes(), folder.camera()),
@@ -107,6 +109,7 @@ void run(const SweepOptions& options, filter::TermSet terms) {
   }
   if (options.study.pictures && !file.has_unfiltered()) names.emplace_back("unfiltered.exr");
   folder.make({options.input}, names, options.common.json);
+  print_notes(notes, options.common.quiet);
   const study::Reference reference(folder.reference_picture(), folder.width(),
                                    folder.metric_options());
   if (options.study.pictures) {

@@ -17,6 +17,7 @@
 #include "filter/parameters_text.h"
 #include "filter_options.h"
 #include "noise_report.h"
+#include "notes.h"
 #include "parameter_lists.h"
 #include "pass_range.h"
 #include "study/study_file.h"
@@ -127,7 +128,8 @@ void run(const TuneOptions& options, filter::TermSet asked) {
   if (lists.r0.empty()) lists.r0 = kRadii;
   std::vector<filter::Parameters> sets = all_sets(lists);
   const study::Dump dump(options.input);
-  fit_terms(dump, sets, asked, options.common.quiet);
+  std::vector<std::string> notes;
+  fit_terms(dump, sets, asked, notes);
   study::Tune tune;
   tune.sets = sets;
   tune.passes = parse_passes(options.passes);
@@ -135,6 +137,7 @@ void run(const TuneOptions& options, filter::TermSet asked) {
   tune.epsilon = options.epsilon;
   tune.max_memory = options.max_memory;
   check_files({options.input}, {options.common.json});
+  print_notes(notes, options.common.quiet);
   core::Progress progress("tune", kProgressSteps, options.common.quiet);
   tune.on_progress = [&progress](std::uint64_t done, std::uint64_t total) {
     progress.advance(static_cast<std::size_t>(kProgressSteps * static_cast<double>(done) /

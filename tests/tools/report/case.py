@@ -64,6 +64,7 @@ class PageTest(unittest.TestCase):
         self.page.console.clear()
         self.page.open(self.url)
         self.page.wait('document.querySelectorAll(".plot svg").length === 8')
+        self.page.wait('document.querySelector(".stage").dataset.ready')  # it changes the height of the page
         self.addCleanup(self.check_silence)
 
     def check_silence(self):
@@ -95,12 +96,17 @@ class PageTest(unittest.TestCase):
         }})()''')
 
     def center(self, selector):
-        """Of the first visible element, scrolled into sight."""
-        return self.page.run(f'''(() => {{
+        """Of the first visible element, scrolled into sight, once the page moves no more."""
+        return self.page.run(f'''(async () => {{
             const e = document.querySelector({selector!r});
-            e.scrollIntoView({{block: 'center', behavior: 'instant'}});
-            const b = e.getBoundingClientRect();
-            return [b.left + b.width / 2, b.top + b.height / 2];
+            for (let before = null;;) {{
+                e.scrollIntoView({{block: 'center', behavior: 'instant'}});
+                await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+                const b = e.getBoundingClientRect();
+                const now = [b.left + b.width / 2, b.top + b.height / 2];
+                if (before && before.every((x, k) => x === now[k])) return now;
+                before = now;
+            }}
         }})()''')
 
     def click(self, selector):
