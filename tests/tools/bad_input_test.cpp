@@ -39,12 +39,16 @@ class Workplace {
     write("unknown_key.json", scene("[0, 0, 0]", "\"reflectence\": 0.5"));
     write("nan.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n");
     write("degenerate.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\n");
+    write("broken.png", std::string("\x89PNG\r\n\x1a\n") + std::string(40, '\0'));
+    write("broken_picture.json", scene("[0, 0, 0]", "\"reflectance_map\": \"broken.png\""));
+    write("far.obj", "v 1e9 0 0\nv 1000000008 0 0\nv 1e9 8 0\nf 1 2 3\n");
     write("scene.xyz", "");
     write("text.pvb", "this is no dump");
     render("good.pvb", "");
     fs::copy_file(folder_ / "good.pvb", folder_ / "cut.pvb");
     fs::resize_file(folder_ / "cut.pvb", fs::file_size(folder_ / "good.pvb") / 3);
     render("lacking.pvb", "--channels normal,reflectance");
+    render("grey.pvb", "--image " + (folder_ / "grey.exr"));
   }
   [[nodiscard]] std::vector<std::string> files() const {
     std::vector<std::string> names;
@@ -132,6 +136,17 @@ TEST_CASE("every mistake is one line, has its exit code and leaves nothing behin
       {"psf filter FOLDER/good.pvb -o FOLDER/nowhere/x.exr", 4, "does not exist, create it first"},
       {"psf filter FOLDER/good.pvb -o FOLDER/x.jpg", 2, "use .exr or .png"},
       {"psf filter FOLDER/good.pvb -o FOLDER/x.exr --follow --snapshots pow2", 2, "--follow"},
+      // what is said before an error is not said
+      {"psf filter FOLDER/lacking.pvb -o FOLDER/x.jpg", 2, "use .exr or .png"},
+      {"psf tune FOLDER/lacking.pvb --json FOLDER/nowhere/x.json", 4, "does not exist"},
+      {"psf sweep FOLDER/lacking.pvb --reference FOLDER/grey.exr --r0 4px -o FOLDER/x --json "
+       "FOLDER/nowhere/x.json",
+       4, "does not exist"},
+      {"psf converge FOLDER/lacking.pvb --reference FOLDER/grey.exr --r0 4px -o FOLDER/x --json "
+       "FOLDER/nowhere/x.json",
+       4, "does not exist"},
+      {"psf-render FOLDER/broken_picture.json --image FOLDER/x.exr", 3, "cannot read the picture"},
+      {"psf-render FOLDER/far.obj -o FOLDER/x.pvb --sky 1", 5, "would all be in one place"},
       // stopping, saving, joining
       {"psf-render SAMPLES/cornell.json --image FOLDER/x.exr --resume", 2, "give -o OUT.pvb"},
       {"psf-render SAMPLES/cornell.json -o FOLDER/text.pvb --resume", 3, "is no path-vertex"},
