@@ -110,6 +110,7 @@ class Many {
                 std::vector<Statistics>& by_scale) {
     constexpr std::size_t kGrain = engine::RingEngine::kGrain;
     const std::span<const std::uint32_t> queries = engine.queries();
+    receiver_.set_roles(roles.of);
     for_slabs(queries, kGrain, [&](std::size_t first, std::size_t count) {
       std::vector<std::vector<Statistics>> parts(core::range_count(count, kGrain));
       core::parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
@@ -175,6 +176,7 @@ class Many {
         queries.push_back(static_cast<std::uint32_t>(i));
         c_bar.push_back(average.c_bar[i]);
       }
+      receiver_.set_roles(average.roles);
       for_slabs(queries, Receiver::kMostQueries, [&](std::size_t first, std::size_t count) {
         receiver_.take(0, k, 1, std::span(c_bar).subspan(first, count));
       });

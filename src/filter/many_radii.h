@@ -18,6 +18,8 @@ class Receiver {
   Receiver& operator=(const Receiver&) = delete;
   virtual ~Receiver() = default;
 
+  // What each record is; before the slabs of a traversal, and valid during them.
+  virtual void set_roles(std::span<const Role> roles) { static_cast<void>(roles); }
   // Record numbers; those of part p are [p * grain, (p + 1) * grain).
   virtual void begin(std::span<const std::uint32_t> queries, std::size_t grain) = 0;
   // (queries of the part, count) c_bar, of the radii [first, first + count); each part once.

@@ -67,14 +67,18 @@ void ManyAdder::end() {
 
 void ManyAdder::add(Overflows& overflows, std::uint32_t i, std::size_t first,
                     std::span<const Rgb> c_bar) {
+  if (ManyPictures::overflows(*r_, roles_[i], i)) {
+    for (std::size_t k = 0; k < c_bar.size(); ++k) overflows.push_back({i, first + k, true});
+    return;
+  }
   pictures_[camera_of(i)].add_filtered(*r_, i, first, c_bar, [&](std::size_t radius) {
-    overflows.push_back({i, radius});
+    overflows.push_back({i, radius, false});
   });
 }
 
 void ManyAdder::leave_out(Overflows& overflows) {
-  for (const auto& [record, radius] : overflows) {
-    pictures_[camera_of(record)].leave_out(*r_, record, radius);
+  for (const auto& [record, radius, everywhere] : overflows) {
+    if (!everywhere) pictures_[camera_of(record)].leave_out(*r_, record, radius);
   }
   overflows_ += overflows.size();
   overflows.clear();

@@ -21,6 +21,7 @@ class ManyAdder : public filter::Receiver {
   // borrowed.
   void start(const filter::Records& records, std::span<ManyPictures> pictures);
 
+  void set_roles(std::span<const filter::Role> roles) override { roles_ = roles; }
   void begin(std::span<const std::uint32_t> queries, std::size_t grain) override;
   void take(std::size_t part, std::size_t first, std::size_t count,
             std::span<const Rgb> c_bar) override;
@@ -37,6 +38,7 @@ class ManyAdder : public filter::Receiver {
   struct Overflow {
     std::uint32_t record;
     std::size_t radius;
+    bool everywhere;  // it is in no picture: add_record() adds nothing of it
   };
   using Overflows = std::vector<Overflow>;
   struct Late {
@@ -61,6 +63,7 @@ class ManyAdder : public filter::Receiver {
 
   const filter::Records* r_ = nullptr;
   std::span<ManyPictures> pictures_;
+  std::span<const filter::Role> roles_;
   std::span<const std::uint32_t> queries_;
   std::size_t grain_ = 0;
   // By camera and pixel: the part that met it first, counted over all slabs from 1 on.

@@ -1,6 +1,8 @@
 #include "study/many_pictures.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "core/parallel.h"
 
@@ -9,6 +11,19 @@ namespace {
 
 Rgb unfiltered_of(const filter::Records& records, std::size_t i) {
   return records.unfiltered.empty() ? Rgb(0, 0, 0) : records.unfiltered[i];
+}
+
+Rgb path_radiance(const Rgb& u, const Rgb& alpha, const Rgb& c) {
+  return {u.x + alpha.x * c.x, u.y + alpha.y * c.y, u.z + alpha.z * c.z};
+}
+
+// c_bar without the radii for which it makes a path overflow that alpha c_bar does not: NaN there.
+std::vector<Rgb> without_overflows(const Rgb& u, const Rgb& alpha, std::span<const Rgb> c_bar) {
+  std::vector<Rgb> kept(c_bar.begin(), c_bar.end());
+  for (Rgb& c : kept) {
+    if (!is_finite(path_radiance(u, alpha, c))) c = Rgb(std::numeric_limits<float>::quiet_NaN());
+  }
+  return kept;
 }
 
 Rgb mean(const double* sum, const double* more, double paths) {
@@ -27,8 +42,14 @@ ManyPictures::ManyPictures(const filter::CameraView& camera, std::size_t radii)
       paths_(std::size_t{camera.width} * camera.height),
       input_(camera.width, camera.height) {}
 
+bool ManyPictures::overflows(const filter::Records& records, filter::Role role, std::size_t i) {
+  return role == filter::Role::source &&
+         !is_finite(path_radiance(unfiltered_of(records, i), records.throughput[i],
+                                  records.contribution[i]));
+}
+
 void ManyPictures::add_record(const filter::Records& records, filter::Role role, std::size_t i) {
-  if (role == filter::Role::left_out) return;
+  if (role == filter::Role::left_out || overflows(records, role, i)) return;
   const std::uint32_t pixel = records.pixel[i];
   const Rgb u = unfiltered_of(records, i);
   double* sum = &u_[std::size_t{pixel} * 3];
@@ -38,14 +59,20 @@ void ManyPictures::add_record(const filter::Records& records, filter::Role role,
   ++paths_[pixel];
   if (role == filter::Role::no_vertex) input_.add(pixel, u);
   if (role != filter::Role::source) return;
-  const Rgb &alpha = records.throughput[i], &c = records.contribution[i];
-  const Rgb value(u.x + alpha.x * c.x, u.y + alpha.y * c.y, u.z + alpha.z * c.z);
-  if (is_finite(value)) input_.add(pixel, value);
+  input_.add(pixel, path_radiance(u, records.throughput[i], records.contribution[i]));
 }
 
 void ManyPictures::add_filtered(const filter::Records& records, std::size_t i, std::size_t first,
                                 std::span<const Rgb> c_bar,
                                 const std::function<void(std::size_t radius)>& overflows) {
+  // A smaller u cannot make a float overflow that is one itself.
+  constexpr float kLarge = 1e30f;
+  const Rgb u = unfiltered_of(records, i);
+  std::vector<Rgb> kept;
+  if (std::max({std::abs(u.x), std::abs(u.y), std::abs(u.z)}) > kLarge) {
+    kept = without_overflows(u, records.throughput[i], c_bar);
+    c_bar = kept;
+  }
   double* sums = &filtered_[records.pixel[i] * groups_ * kTogether * 3];
   for (std::size_t k = 0; k < c_bar.size();) {
     const std::size_t begin = (first + k) % kTogether, group = (first + k) / kTogether;

@@ -38,10 +38,13 @@ class ManyPictures {
            2 * sizeof(std::uint64_t);
   }
 
-  // Adds record i of a block, but for c_bar, which add_filtered() does.
+  // Whether u + alpha c of a source overflows: then the path is in no picture.
+  [[nodiscard]] static bool overflows(const filter::Records& records, filter::Role role,
+                                      std::size_t i);
+  // Adds record i of a block, but for c_bar, which add_filtered() does; nothing where it overflows.
   void add_record(const filter::Records& records, filter::Role role, std::size_t i);
-  // alpha c_bar of radii [first, first + c_bar.size()) for record i. Visits each radius whose
-  // product overflows: it is left out.
+  // alpha c_bar of radii [first, first + c_bar.size()) for record i, which does not overflow
+  // itself. Visits each radius for which u + alpha c_bar overflows: it is left out.
   void add_filtered(const filter::Records& records, std::size_t i, std::size_t first,
                     std::span<const Rgb> c_bar,
                     const std::function<void(std::size_t radius)>& overflows);

@@ -90,12 +90,13 @@ void add_noise(const filter::Records& records, std::span<const filter::Role> rol
   });
 }
 
-std::vector<NoiseShare> noise_shares(const Dump& dump, const PassSelection& passes,
-                                     double epsilon) {
+std::vector<NoiseShare> noise_shares(const Dump& dump, const PassSelection& passes, double epsilon,
+                                     std::uint32_t sources) {
   filter::Parameters parameters;  // what no term and no radius asks for is not read
   parameters.radius.basis = filter::RadiusBasis::world;
   parameters.block.passes = 1;
   parameters.weights = filter::WeightTerms::none();
+  parameters.sources = sources;
   const ChannelSet channels = dump.select(parameters, false);
   const filter::Blocks blocks(parameters.block, dump.pass_bounds(), passes.first,
                               last_pass(dump, passes));

@@ -67,9 +67,11 @@ class NoiseMoments {
 void add_noise(const filter::Records& records, std::span<const filter::Role> roles,
                std::size_t first, std::size_t last, std::span<NoiseMoments> moments);
 
-// Reads the passes of a dump and returns the shares of each camera; what is averaged plays no part.
-// Throws what Dump throws, Error{interrupted}.
+// Reads the passes of a dump and returns the shares of each camera, of the paths that
+// `--sources 1/sources` chooses; what is averaged plays no part. Throws what Dump throws,
+// Error{interrupted}.
 [[nodiscard]] std::vector<NoiseShare> noise_shares(const Dump& dump, const PassSelection& passes,
-                                                   double epsilon = 1e-2);
+                                                   double epsilon = 1e-2,
+                                                   std::uint32_t sources = 1);
 
 }  // namespace psf::study

@@ -31,6 +31,11 @@ class Tiles {
     values_[pixel / width_ / kTile * columns_ + pixel % width_ / kTile] += value;
     sum_ += value;
   }
+  // Of a picture of the same size.
+  void add(const Tiles& others) {
+    for (std::size_t k = 0; k < values_.size(); ++k) values_[k] += others.values_[k];
+    sum_ += others.sum_;
+  }
   [[nodiscard]] double sum() const { return sum_; }
   [[nodiscard]] double standard_error() const { return standard_error_beyond(1, Tiles()); }
   // Standard error of `factor` times the sum of these minus that of others; one tile has none.
@@ -61,6 +66,8 @@ class Tuner {
     height_ = camera.height;
     tuning_.rows.resize(t.sets.size());
     tiles_.resize(t.sets.size());
+    covariances_.resize(t.sets.size());
+    u_tiles_ = Tiles(width_, height_);
     tuning_.has_independent_paths = dump.metadata().sampler == "independent";
   }
 
@@ -77,7 +84,9 @@ class Tuner {
       traverse(traversal);
       ++done_;
     }
-    tuning_.noise = noise_shares(dump_, t_.passes, t_.epsilon)[t_.camera];
+    tuning_.noise = noise_shares(dump_, t_.passes, t_.epsilon, t_.sets[0].sources)[t_.camera];
+    ++done_;
+    report_progress(0, blocks_of(t_.sets[0]).all().size());
     choose();
     return std::move(tuning_);
   }
@@ -95,11 +104,16 @@ class Tuner {
     return {parameters.block, dump_.pass_bounds(), t_.passes.first, last_pass(dump_, t_.passes)};
   }
 
+  // `done` of the paths of one reading: there is one for each traversal, and one for the noise.
+  void report_progress(std::uint64_t done, std::uint64_t total) const {
+    if (t_.on_progress) t_.on_progress(done_ * total + done, (traversals_.size() + 1) * total);
+  }
+
   void traverse(const Traversal& traversal) {
     const VariantGroup& group = *traversal.group;
     ManyRun run = run_of(traversal);
     run.on_progress = [this](std::uint64_t done, std::uint64_t total) {
-      if (t_.on_progress) t_.on_progress(done_ * total + done, traversals_.size() * total);
+      report_progress(done, total);
     };
     const ManyOutcome outcome = filter_many(dump_, run);
     const auto of_parts = [&](const auto& picture_of) {
@@ -205,8 +219,9 @@ class Tuner {
       const double of_all = at.of_i(unfiltered) - at.of_j(unfiltered);
       const double of_u = at.of_i(u) - at.of_j(u);
       tuning_.unfiltered += at.weight * at.shares * of_all * of_all;
-      tuning_.u_variance += at.weight * at.shares * of_u * of_u;
+      u_tiles_.add(at.pixel, at.weight * at.shares * of_u * of_u);
     });
+    tuning_.u_variance = u_tiles_.sum();
   }
 
   // The noise of a part is what differs from the filtered picture of the other parts; of all where
@@ -232,7 +247,7 @@ class Tuner {
   }
 
   void measure(const Parts& filtered, const Parts& unfiltered, const Parts& u, std::size_t row) {
-    Tiles tiles(width_, height_);
+    Tiles tiles(width_, height_), covariances(width_, height_);
     TuneRow& result = tuning_.rows[row];
     result.bias_sq = result.variance = 0;
     each(filtered, unfiltered, [&](const Place& at) {
@@ -243,41 +258,59 @@ class Tuner {
       result.bias_sq += bias_sq;
       result.variance += variance;
       tiles.add(at.pixel, bias_sq + variance);
+      const double of_u = at.of_i(u) - at.of_j(u);
+      covariances.add(at.pixel, at.weight * at.shares * 2 * spread * of_u);
     });
     result.standard_error = tiles.standard_error();
     tiles_[row] = std::move(tiles);
+    covariances_[row] = std::move(covariances);
   }
 
   void choose() {
     std::vector<TuneRow>& rows = tuning_.rows;
-    for (const TuneRow& row : rows) tuning_.constant = std::min(tuning_.constant, row.bias_sq);
-    for (TuneRow& row : rows) {
-      row.error = row.bias_sq + row.variance + tuning_.u_variance - tuning_.constant;
-    }
-    tuning_.unfiltered += tuning_.constant;
-    for (std::size_t row = 1; row < rows.size(); ++row) {
-      if (rows[row].error < rows[tuning_.best].error) tuning_.best = row;
-    }
-    const Tiles& best = tiles_[tuning_.best];
+    std::size_t& choice = tuning_.best;
     for (std::size_t row = 0; row < rows.size(); ++row) {
-      if (row == tuning_.best) continue;
-      const double noise = tiles_[row].standard_error_beyond(1, best);
-      const double above = rows[row].error - rows[tuning_.best].error;
-      rows[row].distance = noise > 0 ? above / noise : 0;
-      // Without the constant sets seem to differ by more than they do, which is the safe side.
-      const double more = (1 + kTolerance) * tiles_[row].sum() - best.sum();
-      rows[row].may_be_better =
-          more < kSure * tiles_[row].standard_error_beyond(1 + kTolerance, best);
+      tuning_.constant = std::min(tuning_.constant, rows[row].bias_sq);
+      if (without_u(rows[row]) < without_u(rows[choice])) choice = row;
     }
+    tuning_.u_covariance = covariances_[choice].sum();
+    const double of_u = tuning_.u_variance + tuning_.u_covariance;
+    for (TuneRow& row : rows) row.error = without_u(row) + of_u - tuning_.constant;
+    tuning_.unfiltered += tuning_.constant;
+    u_tiles_.add(covariances_[choice]);
+    const Tiles& best = tiles_[choice];
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      if (row == choice) continue;
+      const double noise = tiles_[row].standard_error_beyond(1, best);
+      const double above = rows[row].error - rows[choice].error;
+      rows[row].distance = noise > 0 ? above / noise : 0;
+      rows[row].may_be_better = may_be_better(tiles_[row], best, of_u);
+    }
+  }
+
+  static double without_u(const TuneRow& row) { return row.bias_sq + row.variance; }
+
+  // What is added to both errors brings them closer in proportion, so to do without it is the safe
+  // side: without the constant, which is not above 0 and is taken off, and without u's part, as
+  // long as that is not below 0.
+  [[nodiscard]] bool may_be_better(Tiles other, Tiles best, double of_u) const {
+    if (of_u < 0) {
+      other.add(u_tiles_);
+      best.add(u_tiles_);
+    }
+    const double more = (1 + kTolerance) * other.sum() - best.sum();
+    return more < kSure * other.standard_error_beyond(1 + kTolerance, best);
   }
 
   const Dump& dump_;
   const Tune& t_;
   std::size_t width_ = 0, height_ = 0;
   std::size_t parts_ = kParts;
-  std::vector<double> shares_;  // of a part
-  Picture guess_;               // g
-  std::vector<Tiles> tiles_;
+  std::vector<double> shares_;      // of a part
+  Picture guess_;                   // g
+  std::vector<Tiles> tiles_;        // of a row's bias_sq + variance
+  std::vector<Tiles> covariances_;  // of a row: twice the covariance of f and u
+  Tiles u_tiles_;                   // of the variance of u; then of all that u adds to the errors
   std::vector<Traversal> traversals_;
   std::uint64_t done_ = 0;  // traversals
   Tuning tuning_;

@@ -21,7 +21,7 @@ namespace psf::study {
 // smears would make its own relative error seem small.
 struct TuneRow {
   filter::Parameters parameters;
-  double error = 0;           // bias_sq + variance + u_variance - constant
+  double error = 0;           // bias_sq + variance + u_variance + u_covariance - constant
   double standard_error = 0;  // of bias_sq + variance
   // Means over pairs of parts: of (F_A - A) (F_B - B), whose expected value is bias^2 because parts
   // are independent; of (f_A - f_B)^2 / (1 / a + 1 / b), a and b the parts' shares of the paths.
@@ -39,8 +39,13 @@ struct Tuning {
   std::size_t best = 0;       // the choice: the row of the least error
   std::size_t parts = 0;      // that were compared
   double unfiltered = 0;      // relMSE of the unfiltered picture
-  double u_variance = 0;      // what of it is of u: in every set's error, and in no choice
-  NoiseShare noise;           // of the unfiltered picture
+  // What u adds to every error: its variance, and twice its covariance with f, which is below 0
+  // where they make up for each other. The covariance is that of the choice: it comes from alpha,
+  // which no set changes, so it is nearly the same for all sets. So neither ranks them.
+  double u_variance = 0, u_covariance = 0;
+  // Of the unfiltered picture, of the paths that the first set's `sources` chooses; a path is left
+  // out where u, alpha, x or c is not finite, whatever else the sets would leave out.
+  NoiseShare noise;
   // The least bias_sq where it is below 0, else 0: parts of one low-discrepancy sequence make up
   // for each other, so that their noise correlates and every bias_sq is off by this much.
   double constant = 0;
@@ -55,8 +60,8 @@ struct Tune {
   PassSelection passes;
   std::size_t camera = 0;
   double epsilon = 1e-2;
-  std::optional<std::uint64_t> max_memory;                                   // bytes
-  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress;  // paths
+  std::optional<std::uint64_t> max_memory;  // bytes; the noise, read last, takes less than the rest
+  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress;  // paths, read again
 };
 
 // Blocks go to four parts in turn, or to two where a set has fewer than four, filtered as the whole

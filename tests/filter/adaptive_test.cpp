@@ -107,6 +107,14 @@ TEST_CASE("Few contributions and equal ones always agree; so does what is no num
   CHECK(filter::agrees(with_means(64, infinity, 1), with_means(500, infinity, 1), 3));
 }
 
+TEST_CASE("Means that are alike to 2^-16 agree, whatever their standard errors") {
+  for (const double part : {0.99, 1.01}) {
+    std::vector<double> values(64, 1024);
+    values.resize(128, 1024 + part * 1024 * filter::kAlike);
+    CHECK(filter::agrees(moments_of(values, 64), moments_of(values, 128), 1) == (part < 1));
+  }
+}
+
 TEST_CASE("Below the threshold a ball grows, above it stops, however near") {
   // 64 values each, of spread 1 around 3 and around 3 + step.
   const double standard_error = std::sqrt(2.0 / 63);
@@ -230,6 +238,75 @@ TEST_CASE("Radii are those of the page, to the last record, by every search") {
   CHECK(run(set).radius == right.radius);
   run.parameters.search = search::Kind::plain;
   CHECK(run(set).radius == right.radius);
+}
+
+// How many records another kind of search gives another radius.
+std::size_t different(const RecordSet& set, EstimatorRun run, const std::vector<float>& radius,
+                      search::Kind kind) {
+  run.parameters.search = kind;
+  const std::vector<float> found = run(set).radius;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < set.size(); ++i) count += found[i] != radius[i] ? 1u : 0u;
+  return count;
+}
+
+TEST_CASE("Contributions that are nearly equal give the same radii by every search") {
+  const RecordSet noise = step_of_noise(6000, 1);
+  for (const double level : {1.0, 3.3}) {
+    for (const int bits : {8, 12, 15, 16, 17, 18, 20, 22, 23}) {
+      RecordSet set = noise;
+      for (Rgb& c : set.contribution) {
+        c = Rgb(static_cast<float>(level * (1 + std::ldexp(0.5 * double{c.x}, -bits))));
+      }
+      EstimatorRun run(Estimator::adaptive, 0.3);
+      run.parameters.agree = 1;
+      const std::vector<float> radius = run(set).radius;
+      INFO(level << " (1 + [0, 2^-" << bits << "])");
+      CHECK(different(set, run, radius, search::Kind::plain) == 0);
+      CHECK(different(set, run, radius, search::Kind::brute) == 0);
+    }
+  }
+}
+
+TEST_CASE("A nearly even half beside a noisy one gives the same radii by every search") {
+  for (const int bits : {12, 16, 18, 22}) {
+    RecordSet set = step_of_noise(6000, 4);
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      Rgb& c = set.contribution[i];
+      if (set.position[i].x < 1) c = Rgb(static_cast<float>(7 + std::ldexp(double{c.x}, -bits)));
+    }
+    EstimatorRun run(Estimator::adaptive, 0.3);
+    run.parameters.agree = 1;
+    const std::vector<float> radius = run(set).radius;
+    INFO("2^-" << bits);
+    CHECK(different(set, run, radius, search::Kind::plain) == 0);
+    CHECK(different(set, run, radius, search::Kind::brute) == 0);
+  }
+}
+
+TEST_CASE("Contributions in any unit give the same radii by every search") {
+  const RecordSet set = step_of_noise(4096, 1.5f);
+  EstimatorRun run(Estimator::adaptive, 0.3);
+  run.parameters.agree = 1;
+  const std::vector<float> radius = run(set).radius;
+  for (const int unit : {-100, -90, -75, -63, -40, 20, 60, 120}) {
+    RecordSet other = set;
+    for (Rgb& c : other.contribution) c = Rgb(std::ldexp(c.x, unit));
+    INFO("2^" << unit);
+    CHECK(different(other, run, radius, search::Kind::flann) == 0);
+    CHECK(different(other, run, radius, search::Kind::plain) == 0);
+    CHECK(different(other, run, radius, search::Kind::brute) == 0);
+  }
+}
+
+TEST_CASE("Contributions of which floats cannot hold all squares give the same radii") {
+  RecordSet set = step_of_noise(4096, 1.5f);
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    if (set.position[i].x < 1) set.contribution[i] = Rgb(std::ldexp(set.contribution[i].x, -110));
+  }
+  EstimatorRun run(Estimator::adaptive, 0.3);
+  run.parameters.agree = 1;
+  CHECK(different(set, run, run(set).radius, search::Kind::brute) == 0);
 }
 
 TEST_CASE("Every engine chooses the same radii") {

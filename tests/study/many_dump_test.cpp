@@ -99,13 +99,8 @@ TEST_CASE("Many radii on chosen passes equal separate runs") {
   check(path, run, study::filter_many(study::Dump(path), run), 3);
 }
 
-TEST_CASE("A path that overflows is left out of its radius alone") {
-  const TempFolder folder;
-  const std::string path = folder / "a.pvb";
-  RecordSet set = random_records(400, 6, 0, kOne);
-  for (std::size_t i = 0; i < 400; i += 50) set.contribution[i] = Rgb(1e30f, 1, 1);
-  for (std::size_t i = 0; i < 400; i += 9) set.throughput[i] = Rgb(1e10f, 1, 1);
-  write_dump(path, set, {kOne, {200, 200}, {}});
+// Compares pictures and overflows of many radii with those of separate runs.
+void check_overflows(const std::string& path) {
   const study::ManyRun run = many_run("1pass");
   const study::ManyOutcome outcome = study::filter_many(study::Dump(path), run);
   std::uint64_t expected = 0;
@@ -119,6 +114,32 @@ TEST_CASE("A path that overflows is left out of its radius alone") {
   }
   CHECK(expected > 0);
   CHECK(outcome.overflows == expected);
+}
+
+TEST_CASE("A source that overflows is in no picture, whatever its average") {
+  const TempFolder folder;
+  const std::string path = folder / "a.pvb";
+  RecordSet set = random_records(400, 6, 0, kOne);
+  // Its own product overflows, its average with others mostly does not.
+  set.contribution[10] = Rgb(3e38f, 1, 1);
+  set.throughput[10] = Rgb(2, 1, 1);
+  set.flags[10] = filter::kHasVertex | filter::kShaded;
+  // Products are finite, their sums with u are not.
+  set.unfiltered[20] = set.unfiltered[30] = Rgb(3e38f, 0, 0);
+  set.contribution[30] = Rgb(3e38f, 1, 1);
+  set.flags[30] = filter::kHasVertex | filter::kShaded;
+  write_dump(path, set, {kOne, {200, 200}, {}});
+  check_overflows(path);
+}
+
+TEST_CASE("A path that overflows is left out of its radius alone") {
+  const TempFolder folder;
+  const std::string path = folder / "a.pvb";
+  RecordSet set = random_records(400, 6, 0, kOne);
+  for (std::size_t i = 0; i < 400; i += 50) set.contribution[i] = Rgb(1e30f, 1, 1);
+  for (std::size_t i = 0; i < 400; i += 9) set.throughput[i] = Rgb(1e10f, 1, 1);
+  write_dump(path, set, {kOne, {200, 200}, {}});
+  check_overflows(path);
 }
 
 TEST_CASE("Many radii on a dump of several slabs give the same bytes for any number of threads") {

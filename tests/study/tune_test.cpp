@@ -156,6 +156,77 @@ TEST_CASE("The noise of u is told apart and decides nothing") {
   }
 }
 
+TEST_CASE("Where u and alpha c make up for each other, errors are those of the whole picture") {
+  // Each path meets either a sky or a surface, both of radiance 1: all pictures are 1.
+  const tests::TempFolder folder;
+  const auto one = [](std::size_t) { return 1.0; };
+  const auto none = [](std::size_t) { return 0.0; };
+  RecordSet set = square(one, none);
+  std::mt19937 random(5);
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const bool sky = random() % 2 == 0;
+    set.flags[i] = sky ? 0 : filter::kHasVertex | filter::kShaded;
+    set.unfiltered[i] = sky ? Rgb(1, 1, 1) : Rgb(0, 0, 0);
+    set.contribution[i] = Rgb(1, 1, 1);
+  }
+  const std::vector<filter::Parameters> sets = radii(1);
+  const study::Tuning tuning = tune_square(folder / "a.pvb", set, sets);
+  CHECK(tuning.unfiltered == Approx(0).margin(1e-9));
+  CHECK(tuning.u_variance > 0.02);
+  CHECK(tuning.u_covariance == Approx(-2 * tuning.u_variance).epsilon(1e-6));
+  for (const study::TuneRow& row : tuning.rows) {
+    CHECK(row.variance > 0.02);
+    CHECK(row.error == Approx(0).margin(1e-9));
+    CHECK_FALSE(row.may_be_better);
+  }
+}
+
+TEST_CASE("Errors are those of the noise of c where u and alpha make up for each other") {
+  const tests::TempFolder folder;
+  const auto one = [](std::size_t) { return 1.0; };
+  const auto none = [](std::size_t) { return 0.0; };
+  RecordSet set = square(one, none);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(0.9f, 1.1f);
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const bool sky = random() % 2 == 0;
+    set.flags[i] = sky ? 0 : filter::kHasVertex | filter::kShaded;
+    set.unfiltered[i] = sky ? Rgb(1, 1, 1) : Rgb(0, 0, 0);
+    set.contribution[i] = Rgb(unit(random));
+  }
+  const std::vector<filter::Parameters> sets = radii(1);
+  const study::Tuning tuning = tune_square(folder / "a.pvb", set, sets);
+  const study::TuneRow& wide = tuning.rows[5];
+  CHECK(wide.error < 0.25 * tuning.rows[0].error);
+  for (const study::TuneRow& row : tuning.rows) CHECK(row.error < 1e-3);
+  CHECK(tuning.unfiltered == Approx(tuning.rows[0].error).epsilon(0.3));
+}
+
+TEST_CASE("Progress ends with the last reading, and the noise is of the paths that were chosen") {
+  const tests::TempFolder folder;
+  const auto one = [](std::size_t) { return 1.0; };
+  const auto none = [](std::size_t) { return 0.0; };
+  const RecordSet set = square(one, none);
+  std::vector<filter::Parameters> sets = radii(1);
+  const study::Tuning all = tune_square(folder / "a.pvb", set, sets);
+  for (filter::Parameters& parameters : sets) parameters.sources = 2;
+  const study::Dump dump(folder / "a.pvb");
+  study::Tune tune;
+  tune.sets = sets;
+  std::uint64_t last = 0, of = 0, before_noise = 0;
+  tune.on_progress = [&](std::uint64_t done, std::uint64_t total) {
+    CHECK(done >= last);
+    before_noise = last;
+    last = done;
+    of = total;
+  };
+  const study::Tuning half = study::tune(dump, tune);
+  CHECK(last == of);
+  CHECK(before_noise <= of / 2);
+  // Half of the paths have twice the noise.
+  CHECK(half.noise.variance() == Approx(2 * all.noise.variance()).epsilon(0.2));
+}
+
 TEST_CASE("A picture of one tile says nothing of its noise") {
   const tests::TempFolder folder;
   RecordSet set(8 * 8 * 4);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
+#include <optional>
 
 #include "core/interrupt.h"
 #include "core/parallel.h"
@@ -22,11 +24,22 @@ std::array<double, kAdaptiveRadii> shares_of_radius() {
   return shares;
 }
 
-// What the engine adds up: luminance, and its square as two floats, whose sum is all but exact.
-std::vector<Rgb> luminances(const Problem& problem, std::span<const Rgb> values) {
+// What the engine adds up: luminance times a power of two, and its square as two floats, whose sum
+// is all but exact. The power is that at which floats hold the squares; the test knows no unit.
+// None where there is no such power for all.
+std::optional<std::vector<Rgb>> luminances(const Problem& problem, std::span<const Rgb> values) {
+  constexpr int kLargest = 40, kLeast = -50;                          // exponents
+  float largest = 0, least = std::numeric_limits<float>::infinity();  // of those that are not 0
+  for (const std::uint32_t j : problem.roles.sources) {
+    const float y = std::abs(luminance(values[j]));
+    largest = std::max(largest, y);
+    if (y > 0) least = std::min(least, y);
+  }
+  const int exponent = largest > 0 ? kLargest - std::ilogb(largest) : 0;
+  if (largest > 0 && exponent + std::ilogb(least) < kLeast) return std::nullopt;
   std::vector<Rgb> result(values.size(), Rgb(0, 0, 0));
   for (const std::uint32_t j : problem.roles.sources) {
-    const float y = luminance(values[j]);
+    const float y = std::ldexp(luminance(values[j]), exponent);
     const double square = double{y} * double{y};
     const auto upper = static_cast<float>(square);
     result[j] = Rgb(y, upper, static_cast<float>(square - double{upper}));
@@ -34,22 +47,16 @@ std::vector<Rgb> luminances(const Problem& problem, std::span<const Rgb> values)
   return result;
 }
 
-// Whether floats hold the squares.
-bool is_moderate(const Problem& problem, std::span<const Rgb> values) {
-  constexpr float kMost = 1e18f;
-  return std::all_of(problem.roles.sources.begin(), problem.roles.sources.end(),
-                     [&](std::uint32_t j) { return std::abs(luminance(values[j])) <= kMost; });
-}
-
-// All radii from one traversal; false where the fast engine does not take the records.
+// All radii from one traversal; false where the fast engine does not take records or values.
 bool in_one_traversal(const Problem& problem, std::span<const Rgb> values, double agree,
                       std::span<float> out) {
   const std::array<double, kAdaptiveRadii> shares = shares_of_radius();
   const std::vector<double> basis(problem.radius.begin(), problem.radius.end());
-  const std::vector<Rgb> averaged = luminances(problem, values);
+  const std::optional<std::vector<Rgb>> averaged = luminances(problem, values);
+  if (!averaged) return false;
   engine::RingEngine rings(problem, shares, basis);
   if (!rings.is_moderate()) return false;
-  rings.set_values(averaged);
+  rings.set_values(*averaged);
   constexpr std::size_t kGrain = engine::RingEngine::kGrain;
   core::parallel_for(rings.queries().size(), kGrain, [&](std::size_t begin, std::size_t end) {
     core::throw_if_interrupted("no picture was written");
@@ -126,8 +133,7 @@ class Plain {
 std::vector<float> adaptive_radii(search::Kind kind, const Problem& problem,
                                   std::span<const Rgb> values, double agree) {
   std::vector<float> radii(problem.records.size(), 0.0f);
-  const bool fast = kind == search::Kind::flann && is_moderate(problem, values);
-  if (!fast || !in_one_traversal(problem, values, agree, radii)) {
+  if (kind != search::Kind::flann || !in_one_traversal(problem, values, agree, radii)) {
     Plain(kind, problem, values, agree).set_radii(radii);
   }
   return radii;

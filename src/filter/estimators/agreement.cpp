@@ -23,7 +23,8 @@ bool agrees(const Moments& ball, const Moments& larger, double agree) {
   const Mean ring =
       mean_of(larger.sum - ball.sum, larger.sum_sq - ball.sum_sq, larger.count - ball.count);
   const double standard_error = std::sqrt(inside.error_sq + ring.error_sq);
-  return !(std::abs(ring.value - inside.value) > agree * standard_error);
+  const double alike = kAlike * std::max(std::abs(inside.value), std::abs(ring.value));
+  return !(std::abs(ring.value - inside.value) > std::max(agree * standard_error, alike));
 }
 
 std::size_t last_that_agrees(std::span<const Moments> balls, double agree) {

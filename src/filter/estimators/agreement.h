@@ -16,6 +16,11 @@ struct Moments {
 // noise stops so many small balls that the arcade loses a quarter; with 128 shadows blur.
 inline constexpr std::uint32_t kFewestTested = 64;
 
+// Means that differ by less than this part of the larger agree, whatever their standard errors.
+// That cannot be seen; and values that are alike to so many digits have variances of which the sums
+// keep too few, so that the order of summation would decide.
+inline constexpr double kAlike = 1.0 / 65536;
+
 // Whether the mean of what `larger` has beyond `ball`, a part of it, is within `agree` standard
 // errors of the mean of `ball` (Welch 1947: each side has a variance of its own, of n values over
 // n - 1). One firefly, as bright as can be, has a standard error of its own size, so it makes no
