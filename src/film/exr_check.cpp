@@ -133,17 +133,44 @@ Extent extent(const std::string& path, const Imath::Box2i& window, const char* w
   if (extent.width <= 0 || extent.height <= 0) {
     damaged(path, fmt::format("its {} window is empty", what));
   }
-  if (extent.width > kMostPixels / extent.height) {
-    throw Error(ErrorCode::limit,
-                fmt::format("{}: its {} window has {} x {} pixels, {} are the most; scale or crop "
-                            "it",
-                            path, what, extent.width, extent.height, kMostPixels));
-  }
   return extent;
 }
 
-void check_header(const std::string& path, const Imf::Header& header, std::uint64_t size) {
-  if (header.hasType() && Imf::isDeepData(header.type())) {
+void check_size(const std::string& path, const Extent& extent, const char* what) {
+  if (extent.width <= kMostPixels / extent.height) return;
+  throw Error(ErrorCode::limit,
+              fmt::format("{}: its {} window has {} x {} pixels, {} are the most; scale or crop it",
+                          path, what, extent.width, extent.height, kMostPixels));
+}
+
+bool is_deep(const Imf::Header& header) {
+  return header.hasType() && Imf::isDeepData(header.type());
+}
+
+// Each chunk has a place in the table of chunks, which is read of every part, and a line number and
+// a length of its own.
+void check_chunks(const std::string& path, const Imf::Header& header, std::uint64_t size) {
+  constexpr std::uint64_t kLeastOfAChunk = 16;
+  const Extent data = extent(path, header.dataWindow(), "data");
+  std::uint64_t across = 1;
+  auto down =
+      static_cast<std::uint64_t>(parts_of(data.height, lines_of_a_chunk(header.compression())));
+  if (header.hasTileDescription()) {
+    const Imf::TileDescription& tiles = header.tileDescription();
+    if (tiles.xSize == 0 || tiles.ySize == 0) damaged(path, "its tiles are empty");
+    across = static_cast<std::uint64_t>(parts_of(data.width, tiles.xSize));
+    down = static_cast<std::uint64_t>(parts_of(data.height, tiles.ySize));
+  }
+  const std::uint64_t most = size / kLeastOfAChunk;
+  if (down <= most && across <= most / down) return;
+  damaged(path, fmt::format("{} x {} pixels in chunks do not fit in a file of {} bytes; it is "
+                            "damaged or cut short",
+                            data.width, data.height, size));
+}
+
+// Of the part that is read.
+void check_pixels(const std::string& path, const Imf::Header& header, std::uint64_t size) {
+  if (is_deep(header)) {
     throw Error(ErrorCode::bad_input,
                 path +
                     ": holds deep pixels, several values each; flatten it first, for example "
@@ -151,6 +178,8 @@ void check_header(const std::string& path, const Imf::Header& header, std::uint6
   }
   const Extent data = extent(path, header.dataWindow(), "data");
   const Extent display = extent(path, header.displayWindow(), "display");
+  check_size(path, data, "data");
+  check_size(path, display, "display");
   // A picture that is nearly all margin would take memory that its file gives no hint of.
   constexpr std::int64_t kMargin = 1 << 25;
   if (display.width * display.height > kMargin + 16 * data.width * data.height) {
@@ -159,12 +188,6 @@ void check_header(const std::string& path, const Imf::Header& header, std::uint6
         fmt::format("{}: its display window of {} x {} pixels is nearly all empty, its data "
                     "window has {} x {}; crop it",
                     path, display.width, display.height, data.width, data.height));
-  }
-  std::int64_t chunks = parts_of(data.height, lines_of_a_chunk(header.compression()));
-  if (header.hasTileDescription()) {
-    const Imf::TileDescription& tiles = header.tileDescription();
-    if (tiles.xSize == 0 || tiles.ySize == 0) damaged(path, "its tiles are empty");
-    chunks = parts_of(data.width, tiles.xSize) * parts_of(data.height, tiles.ySize);
   }
   // Subsampled channels may have few bytes for what others will have to hold.
   std::uint64_t bytes = 2 * static_cast<std::uint64_t>(data.width * data.height);
@@ -178,10 +201,7 @@ void check_header(const std::string& path, const Imf::Header& header, std::uint6
         (one.type == Imf::HALF ? 2 : 4);
   }
   bytes = std::max(bytes, declared);
-  // Each chunk has a place in the table of chunks, and a line number and a length of its own.
-  constexpr std::uint64_t kLeastOfAChunk = 16;
-  if (static_cast<std::uint64_t>(chunks) > size / kLeastOfAChunk ||
-      bytes / most_expansion(header.compression()) > size) {
+  if (bytes / most_expansion(header.compression()) > size) {
     damaged(path, fmt::format("{} x {} pixels of {} bytes do not fit in a file of {} bytes; it is "
                               "damaged or cut short",
                               data.width, data.height, bytes, size));
@@ -205,7 +225,13 @@ void check_exr(const std::string& path) {
                 path + ": cannot be read: " + (error ? error.message() : std::strerror(errno)));
   }
   check_lengths(path, size);
-  for (const Imf::Header& header : read_headers(path)) check_header(path, header, size);
+  const std::vector<Imf::Header> headers = read_headers(path);
+  if (headers.size() == 1) check_pixels(path, headers.front(), size);
+  for (const Imf::Header& header : headers) check_chunks(path, header, size);
+}
+
+void check_part(const std::string& path, std::size_t part) {
+  check_pixels(path, read_headers(path).at(part), std::filesystem::file_size(path));
 }
 
 }  // namespace psf::film

@@ -21,32 +21,51 @@ std::string lower(std::string text) {
 // The channels of one prefix, by what follows it, in lower case.
 using Group = std::map<std::string, std::string>;
 
-std::optional<ExrLayer> layer_of(const Group& group) {
-  const auto find = [&](const char* component, const char* word = "") -> std::string {
-    auto found = group.find(component);
-    if (found == group.end()) found = group.find(word);
-    return found == group.end() ? "" : found->second;
-  };
+// As it stands in the file; empty where there is none.
+std::string find(const Group& group, const std::string& component) {
+  const auto found = group.find(component);
+  return found == group.end() ? "" : found->second;
+}
+std::string find(const Group& group, const std::string& component, const std::string& word) {
+  const std::string channel = find(group, component);
+  return channel.empty() ? find(group, word) : channel;
+}
+
+// Whether the layer's channels are named as OpenEXR wants them, which reads chroma by these alone.
+bool has_names(const ExrLayer& layer, const std::vector<std::string>& names) {
+  const std::string before = layer.prefix.empty() ? "" : layer.prefix + ".";
+  return std::equal(names.begin(), names.end(), layer.channels,
+                    [&](const std::string& name, const std::string& channel) {
+                      return channel == before + name;
+                    });
+}
+
+std::optional<ExrLayer> layer_of(const Group& group, const std::string& prefix) {
   const auto all = [&](LayerKind kind, const std::string& a, const std::string& b,
                        const std::string& c) -> std::optional<ExrLayer> {
     if (a.empty() || b.empty() || c.empty()) return std::nullopt;
     ExrLayer layer;
     layer.kind = kind;
+    layer.prefix = prefix;
     layer.channels[0] = a;
     layer.channels[1] = b;
     layer.channels[2] = c;
-    layer.alpha = find("a", "alpha");
+    layer.alpha = find(group, "a", "alpha");
     return layer;
   };
-  std::optional<ExrLayer> layer =
-      all(LayerKind::color, find("r", "red"), find("g", "green"), find("b", "blue"));
-  if (!layer) layer = all(LayerKind::chroma, find("y"), find("ry"), find("by"));
-  if (!layer) layer = all(LayerKind::vector, find("x"), find("y"), find("z"));
-  if (!layer && !find("y").empty()) {
+  std::optional<ExrLayer> layer = all(LayerKind::color, find(group, "r", "red"),
+                                      find(group, "g", "green"), find(group, "b", "blue"));
+  if (!layer) {
+    layer = all(LayerKind::chroma, find(group, "y"), find(group, "ry"), find(group, "by"));
+    if (layer && !has_names(*layer, {"Y", "RY", "BY"})) return std::nullopt;
+  }
+  if (!layer) layer = all(LayerKind::vector, find(group, "x"), find(group, "y"), find(group, "z"));
+  if (!layer && !find(group, "y").empty()) {
     layer.emplace();
     layer->kind = LayerKind::grey;
-    layer->channels[0] = find("y");
-    layer->alpha = find("a", "alpha");
+    layer->prefix = prefix;
+    layer->channels[0] = find(group, "y");
+    layer->alpha = find(group, "a", "alpha");
   }
   return layer;
 }
@@ -64,10 +83,9 @@ std::vector<ExrLayer> exr_layers(const std::vector<ExrPart>& parts) {
           lower(channel.substr(prefixed ? dot + 1 : 0)), channel);
     }
     for (const auto& [prefix, group] : groups) {
-      std::optional<ExrLayer> layer = layer_of(group);
+      std::optional<ExrLayer> layer = layer_of(group, prefix);
       if (!layer) continue;
       layer->part = part;
-      layer->prefix = prefix;
       layer->name = prefix.empty() && parts.size() > 1 ? parts[part].name : prefix;
       layers.push_back(*layer);
     }

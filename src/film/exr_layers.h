@@ -29,9 +29,9 @@ struct ExrLayer {
 };
 
 // Channels that differ in what follows the last dot of their names are a layer: R, G, B in either
-// case, or red, green, blue; else Y, RY, BY; else X, Y, Z; else Y. Where a file has several parts,
-// a layer without prefix bears its part's name, and one whose prefix is in several parts both
-// names.
+// case, or red, green, blue; else Y, RY, BY in capitals (in another case they are no layer at all,
+// as their Y is no grey); else X, Y, Z; else Y. Where a file has several parts, a layer without
+// prefix bears its part's name, and one whose prefix is in several parts both names.
 [[nodiscard]] std::vector<ExrLayer> exr_layers(const std::vector<ExrPart>& parts);
 
 // The layer `name`, with or without a dot behind; where that is empty, the colours at the root, or

@@ -38,8 +38,8 @@ struct Image {
 // them. Throws Error{io}. The caller names a path whose folder exists; the file appears whole or
 // not at all.
 void write_exr(const std::string& path, const Image& image);
-// Reads every channel of an EXR as write_exr() makes them, as float. Throws what check_exr() throws
-// and Error{bad_input}. Those of other programs are read by read_picture().
+// Reads every channel of an EXR as write_exr() makes them, as float. Throws what check_part()
+// throws and Error{bad_input}. Those of other programs are read by read_picture().
 [[nodiscard]] Image read_exr(const std::string& path);
 
 // 8-bit PNG of R, G, B: times 2^exposure, the tone curve of display.h, sRGB transfer.

@@ -56,7 +56,8 @@ void check_meaning(const std::string& path, const Imf::Header& header) {
     std::string name = space->value();
     std::transform(name.begin(), name.end(), name.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (name.starts_with("srgb") || name.starts_with("gamma") || name == "rec709") {
+    const bool linear = name.find("lin") != std::string::npos;  // "sRGB - Linear", "lin_srgb"
+    if (!linear && (name.starts_with("srgb") || name.starts_with("gamma") || name == "rec709")) {
       refuse(path,
              fmt::format("its colours are not linear, its attribute oiio:ColorSpace is "
                          "\"{}\"; convert it, for example with oiiotool --tocolorspace linear",
@@ -106,9 +107,9 @@ Pixels read_chroma(const std::string& path, const ExrLayer& layer) {
   const std::size_t width = pixels.width();
   std::vector<Imf::Rgba> row(width);
   pixels.colors.reserve(width * pixels.height());
+  // Every row goes to the same place.
+  input.setFrameBuffer(row.data() - pixels.window.min.x, 1, 0);
   for (int y = pixels.window.min.y; y <= pixels.window.max.y; ++y) {
-    // Every row goes to the same place.
-    input.setFrameBuffer(row.data() - pixels.window.min.x, 1, 0);
     input.readPixels(y);
     for (const Imf::Rgba& color : row) {
       pixels.colors.emplace_back(color.r, color.g, color.b);
@@ -120,16 +121,17 @@ Pixels read_chroma(const std::string& path, const ExrLayer& layer) {
 
 void apply_alpha(const Imf::Header& header, Pixels& pixels, Picture& picture) {
   if (pixels.alpha.empty()) return;
-  if (number_of(header, "oiio:UnassociatedAlpha", 0) != 0) {
+  const bool unassociated = number_of(header, "oiio:UnassociatedAlpha", 0) != 0;
+  if (unassociated) {
     for (std::size_t i = 0; i < pixels.alpha.size(); ++i) pixels.colors[i] *= pixels.alpha[i];
   }
   const auto part = std::count_if(pixels.alpha.begin(), pixels.alpha.end(),
                                   [](float alpha) { return alpha != 1; });
   if (part == 0) return;
   picture.notes.push_back(
-      fmt::format("{}: {} of {} pixels are not opaque; their colours are taken as they are, over "
-                  "black",
-                  picture.path, part, pixels.alpha.size()));
+      fmt::format("{}: {} of {} pixels are not opaque; their colours are taken {}, over black",
+                  picture.path, part, pixels.alpha.size(),
+                  unassociated ? "times alpha, as the file has them without it" : "as they are"));
 }
 
 // Sets the display window, and what of the pixels lies in it.
@@ -186,6 +188,7 @@ Picture read(const std::string& path, const PictureRequest& request) {
   }
   const ExrLayer layer =
       choose_layer(path, exr_layers(parts), request.layer, request.fallback, request.option);
+  check_part(path, layer.part);
   const auto part = static_cast<int>(layer.part);
   const Imf::Header& header = file.header(part);
   check_meaning(path, header);

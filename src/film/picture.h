@@ -31,8 +31,9 @@ struct PictureRequest {
 
 // Reads scan lines, tiles (of a mipmap the whole picture), one part of several, float, half and
 // whole numbers, and luminance-chroma. Colours are premultiplied, as EXR has them. Throws what
-// check_exr() and choose_layer() throw; Error{bad_input} for a file that is damaged or incomplete
-// and for what is not honoured: subsampled colours, an orientation, colours that are not linear.
+// check_exr(), check_part() and choose_layer() throw; Error{bad_input} for a file that is damaged
+// or incomplete and for what is not honoured: subsampled colours, an orientation, colours that are
+// not linear.
 [[nodiscard]] Picture read_picture(const std::string& path, const PictureRequest& request = {});
 
 // Whether pixels of the two show the same place: throws Error{bad_input} where size, place or

@@ -1,5 +1,6 @@
 #include "filter/roles.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -53,6 +54,18 @@ double shaded_share(const Records& records) {
                            : static_cast<double>(all.shaded) / static_cast<double>(all.vertices);
 }
 
+// Whether a vertex was not shaded, nor a ray shot from it, so that its h is NaN.
+bool lacks_hits(const Records& records) {
+  std::vector<char> parts(core::range_count(records.size(), kGrain), 0);
+  core::parallel_for(records.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const bool unshaded = (records.flags[i] & (kHasVertex | kShaded)) == kHasVertex;
+      if (unshaded && std::isnan(records.hit_distance[i])) parts[begin / kGrain] = 1;
+    }
+  });
+  return std::find(parts.begin(), parts.end(), 1) != parts.end();
+}
+
 class Classifier {
  public:
   Classifier(const Records& records, const Block& block, const Parameters& parameters)
@@ -67,6 +80,7 @@ class Classifier {
     normal_ = disk || weights.normal || weights.plane || weights.gloss;
     reflectance_ = demodulate_ || weights.reflectance;
     hit_distance_ = weights.hit_distance.has_value();
+    shaded_alone_ = hit_distance_ && lacks_hits(records);
     direction_ = disk || weights.direction || weights.gloss;
     roughness_ = weights.gloss.has_value();
     for (const CameraView& camera : block.cameras) {
@@ -104,6 +118,11 @@ class Classifier {
     if (shaded_share_ == 1) return k_ == 1 || chosen(i);
     return is_chosen(x_of(i), y_of(i), pass_of(i), shaded_share_ / k_);
   }
+  // Of a record without vertex: whether it would be shaded if it had one.
+  [[nodiscard]] bool would_be_shaded(std::size_t i) const {
+    if (block_.shade_rate > 1) return (r_.flags[i] & kShaded) != 0;
+    return shaded_share_ == 1 || is_chosen(x_of(i), y_of(i), pass_of(i), shaded_share_);
+  }
   [[nodiscard]] bool chosen(std::size_t i) const {
     return is_chosen(x_of(i), y_of(i), pass_of(i), k_);
   }
@@ -128,6 +147,9 @@ class Classifier {
       bad |= std::uint32_t{!good} << channel;
     };
     check(r_.unfiltered.empty() || all_finite(r_.unfiltered[i]), kUnfiltered);
+    if (shaded_alone_) {
+      check(vertex ? (r_.flags[i] & kShaded) != 0 : would_be_shaded(i), kHitDistance);
+    }
     if (!vertex) return bad;
     check(all_finite(r_.throughput[i]), kThroughput);
     check(all_finite(r_.position[i]), kPosition);
@@ -151,6 +173,7 @@ class Classifier {
   double shaded_share_;  // of the records without vertex that count, for all that is known
   bool demodulate_;
   bool distance_, normal_, reflectance_, hit_distance_, direction_, roughness_;
+  bool shaded_alone_;  // what is not shaded is left out, with a vertex or without
   std::uint64_t pixels_ = 0;
 };
 

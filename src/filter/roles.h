@@ -12,11 +12,12 @@
 namespace psf::filter {
 
 enum class Role : std::uint8_t {
-  left_out,   // a value in use is not finite: no part of averages nor pictures
-  no_vertex,  // contributes u_i alone
-  unchosen,   // the same, but that no part of the picture without filter is made of it
-  query,      // has x_i but no c_i: gets an average, gives none, and no part of that picture either
-  source      // gets and gives
+  left_out,   // a value in use is not finite: it is in no average and no picture
+  no_vertex,  // it has u_i alone, which both pictures show, the filtered one and that without
+              // filter
+  unchosen,   // the same, but `--sources` did not choose it: the picture without filter lacks it
+  query,      // it has x_i but no c_i: it gets an average, and the picture without filter lacks it
+  source      // it has both: it gets an average, is averaged for others, and is in both pictures
 };
 
 // Has a vertex, and is in use.
@@ -36,8 +37,10 @@ struct Roles {
 };
 
 // Looks only at the channels that `parameters` use. `hit_distance` may be infinite (a miss), not
-// NaN. Under demodulation c / rho must be finite too; where it is not, that counts for
-// `reflectance`. Adds to the counts of `statistics`.
+// NaN: where it is of an unshaded vertex, all of the block that is not shaded is left out, so that
+// what met nothing weighs no more than what met a surface, and counts for `hit_distance`. Under
+// demodulation c / rho must be finite too; where it is not, that counts for `reflectance`. Adds to
+// the counts of `statistics`.
 [[nodiscard]] Roles find_roles(const Records& records, const Block& block,
                                const Parameters& parameters, Statistics& statistics);
 

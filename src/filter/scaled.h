@@ -14,7 +14,8 @@ namespace psf::filter {
 // whose lengths need no other unit is taken as it is, and nothing is copied.
 //
 // Radii count first: least and greatest are kept within 2^-58 and 2^58. A block whose radii span
-// more than that is taken as it is; there, a radius below 2^-75 finds its own record alone.
+// more than that, or whose least radius and largest coordinate are more than about 2^183 apart, is
+// taken as it is; there, a radius below 2^-75 finds its own record alone.
 class Scaled {
  public:
   // `radius`: r_i of every record, world units. `least_share`: what is compared are the radii and

@@ -291,8 +291,8 @@ class Tuner {
   static double without_u(const TuneRow& row) { return row.bias_sq + row.variance; }
 
   // What is added to both errors brings them closer in proportion, so to do without it is the safe
-  // side: without the constant, which is not above 0 and is taken off, and without u's part, as
-  // long as that is not below 0.
+  // side. The constant, which is not above 0 and is taken off both, adds to them; so does u's part
+  // where it is above 0. Where it is below, it must not be forgotten.
   [[nodiscard]] bool may_be_better(Tiles other, Tiles best, double of_u) const {
     if (of_u < 0) {
       other.add(u_tiles_);

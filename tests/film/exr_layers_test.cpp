@@ -68,6 +68,17 @@ TEST_CASE("the only colours are taken where none are at the root") {
   CHECK(chosen({{"", {"BY", "RY", "Y"}}}).kind == LayerKind::chroma);
 }
 
+TEST_CASE("luminance and chroma have exact names, which OpenEXR reads alone") {
+  CHECK(chosen({{"", {"a.BY", "a.RY", "a.Y"}}}).kind == LayerKind::chroma);
+  CHECK(refusal({{"", {"by", "ry", "y"}}}) == "3 a.exr: has no channels R, G, B, nor Y");
+  CHECK(refusal({{"", {"By", "RY", "Y"}}}) == "3 a.exr: has no channels R, G, B, nor Y");
+}
+
+TEST_CASE("a channel whose name ends in a dot is no component") {
+  CHECK(refusal({{"", {"foo."}}}) == "3 a.exr: has no channels R, G, B, nor Y");
+  CHECK(exr_layers({{"", {"foo.", "foo.x", "foo.z"}}}).empty());
+}
+
 TEST_CASE("where several layers would do they are listed") {
   const std::vector<ExrPart> two = {
       {"", {"beauty.B", "beauty.G", "beauty.R", "diffuse.B", "diffuse.G", "diffuse.R", "z.Y"}}};

@@ -12,6 +12,7 @@
 #include <ImfStringAttribute.h>
 #include <ImfTiledOutputFile.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "catch.h"
@@ -52,17 +53,17 @@ bool is_sample(const Picture& picture, const Imath::Box2i& window, float scale =
   return picture.colors.size() == picture.width * picture.height;
 }
 
+// Levels beyond the first hold 0.
 void write_tiles(const std::string& path, const Imf::Header& header, bool mipmap) {
-  const Imath::Box2i window = header.dataWindow();
   Imf::TiledOutputFile file(path.c_str(), header, 0);
   for (int level = 0; level < (mipmap ? file.numLevels() : 1); ++level) {
-    // Levels beyond the first hold other values.
-    Imath::Box2i shifted = file.dataWindowForLevel(level);
-    SamplePixels pixels(shifted, kRgb);
+    SamplePixels pixels(file.dataWindowForLevel(level), kRgb);
+    for (std::vector<SamplePixels::Plane>& plane : pixels.planes) {
+      if (level > 0) std::fill(plane.begin(), plane.end(), SamplePixels::Plane{0});
+    }
     file.setFrameBuffer(pixels.buffer);
     file.writeTiles(0, file.numXTiles(level) - 1, 0, file.numYTiles(level) - 1, level);
   }
-  CHECK(window.min.x == header.dataWindow().min.x);
 }
 
 }  // namespace
@@ -121,6 +122,30 @@ TEST_CASE("a part of several is read by its name") {
   CHECK(is_sample(read_picture(folder / "a.exr", {"rgba", "", "--layer"}), window));
 }
 
+TEST_CASE("a part beside the wanted one may be what cannot be read") {
+  const TempFolder folder;
+  const Imath::Box2i window = box(0, 0, 8, 6);
+  {
+    std::vector<Imf::Header> headers(2, sample_header(window, window, kRgb, Imf::ZIPS_COMPRESSION));
+    headers[0].setName("deep");
+    headers[0].setType(Imf::DEEPSCANLINE);
+    headers[1].setName("flat");
+    headers[1].setType(Imf::SCANLINEIMAGE);
+    Imf::MultiPartOutputFile file((folder / "a.exr").c_str(), headers.data(), 2);
+    SamplePixels pixels(window, kRgb);
+    Imf::OutputPart output(file, 1);
+    output.setFrameBuffer(pixels.buffer);
+    output.writePixels(6);
+  }
+  CHECK(is_sample(read_picture(folder / "a.exr", {"flat", "", "--layer"}), window));
+  try {
+    (void)read_picture(folder / "a.exr", {"deep", "", "--layer"});
+    FAIL("was read");
+  } catch (const psf::Error& error) {
+    CHECK(std::string(error.what()).find("deep pixels") != std::string::npos);
+  }
+}
+
 TEST_CASE("luminance and chroma become colours, luminance alone grey") {
   const TempFolder folder;
   {
@@ -173,7 +198,7 @@ TEST_CASE("alpha is told where it is not one, and colours without it are multipl
   const Picture a = read_picture(folder / "a.exr");
   CHECK(is_sample(a, window));
   REQUIRE(a.notes.size() == 1);
-  CHECK(a.notes[0].find("not opaque") != std::string::npos);
+  CHECK(a.notes[0].ends_with("not opaque; their colours are taken as they are, over black"));
   header.insert("oiio:UnassociatedAlpha", Imf::IntAttribute(1));
   write_lines(folder / "b.exr", header, rgba);
   const Picture b = read_picture(folder / "b.exr");
@@ -181,6 +206,9 @@ TEST_CASE("alpha is told where it is not one, and colours without it are multipl
     const int x = static_cast<int>(i % 8), y = static_cast<int>(i / 8);
     CHECK(b.colors[i] == a.colors[i] * sample_value(x, y, 3));
   }
+  REQUIRE(b.notes.size() == 1);
+  CHECK(b.notes[0].ends_with(
+      "their colours are taken times alpha, as the file has them without it, over black"));
 }
 
 TEST_CASE("primaries and projections that differ are told") {
@@ -217,6 +245,9 @@ TEST_CASE("what cannot be honoured is refused by name") {
   Imf::Header display = plain;
   display.insert("oiio:ColorSpace", Imf::StringAttribute("sRGB"));
   CHECK(refused(display).find("not linear") != std::string::npos);
+  Imf::Header linear = plain;
+  linear.insert("oiio:ColorSpace", Imf::StringAttribute("sRGB - Linear"));
+  CHECK(refused(linear) == "nothing");
   CHECK(refused(plain, 20).find("incomplete") != std::string::npos);
 
   const std::vector<SampleChannel> depth = {{"Z"}};

@@ -1,4 +1,5 @@
 // Non-finite input is counted by channel, left out, and never spreads.
+#include <algorithm>
 #include <functional>
 #include <limits>
 
@@ -88,6 +89,42 @@ TEST_CASE("A miss is no bad value") {
   const filter::Average result = run(set, all_terms());
   CHECK(result.statistics.left_out == 0);
   CHECK(result.neighbors[0] == 10);
+}
+
+TEST_CASE(
+    "Where hit distances are compared, what lacks them is left out with its share of the sky") {
+  // Of 80 paths half meet the sky; one in four is shaded, of either half.
+  RecordSet set(80);
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const bool vertex = i % 2 == 0, shaded = i / 2 % 4 == 0;
+    set.flags[i] = static_cast<std::uint8_t>((vertex ? filter::kHasVertex : 0) |
+                                             (shaded ? filter::kShaded : 0));
+    if (!shaded) set.hit_distance[i] = kNan;
+  }
+  Parameters parameters = all_terms();
+  filter::Block block{0, 1, 1, kCamera};
+  block.shade_rate = 4;
+  const auto roles_of = [&] {
+    filter::Statistics statistics;
+    const filter::Roles roles = filter::find_roles(set.view(), block, parameters, statistics);
+    CHECK(statistics.left_out == count_of(statistics, "hit_distance"));
+    return roles.of;
+  };
+  const auto count = [](const std::vector<filter::Role>& roles, filter::Role role) {
+    return std::count(roles.begin(), roles.end(), role);
+  };
+  std::vector<filter::Role> roles = roles_of();
+  CHECK(count(roles, filter::Role::left_out) == 60);
+  CHECK(count(roles, filter::Role::source) == 10);
+  CHECK(count(roles, filter::Role::no_vertex) == 10);
+
+  parameters.weights.hit_distance.reset();
+  CHECK(count(roles_of(), filter::Role::left_out) == 0);
+
+  // With the distances all paths are of use.
+  set.hit_distance.assign(80, 1);
+  parameters = all_terms();
+  CHECK(count(roles_of(), filter::Role::left_out) == 0);
 }
 
 TEST_CASE("What nothing uses may be anything") {

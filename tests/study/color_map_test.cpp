@@ -5,6 +5,7 @@
 #include <OpenImageIO/imagebufalgo.h>
 
 #include <cmath>
+#include <string>
 
 #include "catch.h"
 #include "core/error.h"
@@ -26,8 +27,10 @@ TEST_CASE("every 16th part of a colour map is OpenImageIO's, what is between the
       const auto color = mapped_color(name, static_cast<double>(x) / (kWidth - 1));
       for (int k = 0; k < 3; ++k) {
         const float linear = expected.getchannel(x, 0, 0, k);
-        // OpenImageIO has straight lines in linear light, ours are in what is shown.
-        const double allowed = x % kStep == 0 ? 0.51 : 16;
+        // OpenImageIO has straight lines in linear light, ours are in what is shown; measured 5.4,
+        // and 15.1 where turbo is steep.
+        const double between = std::string(name) == "turbo" ? 15.6 : 5.9;
+        const double allowed = x % kStep == 0 ? 0.51 : between;
         INFO(name << " at " << x << " channel " << k);
         REQUIRE(std::abs(color[static_cast<std::size_t>(k)] -
                          255 * psf::film::srgb_from_linear(linear)) < allowed);

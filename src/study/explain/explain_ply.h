@@ -14,19 +14,19 @@ namespace psf::study {
 //   float scalar_share        of the pixel's luminance, as a fraction of its value
 //   float scalar_excess       the same, beyond what the pixel's own paths say
 //   float scalar_paths        how many of the pixel's paths average it
-//   float scalar_distance     to the nearest of the pixel's vertices whose ball holds it, world
-//   units float scalar_refused_by   sum of 2^k over terms k that refuse it in every ball; 0 if
-//   averaged float scalar_x, scalar_y  its pixel double scalar_record      its number in the dump,
-//   which float does not hold
+//   float scalar_distance     to the nearest of the pixel's vertices whose ball holds it
+//   float scalar_refused_by   sum of 2^k over terms k that refuse it in every ball, or 0
+//   float scalar_x, scalar_y  its pixel
+//   double scalar_record      its number in the dump, which float does not hold
+// Lengths are in world units.
 // Colours: the pixel's own vertices red; averaged ones from dark grey to white with the root of
 // their share; refused ones by the first term that refuses them: kTermColours.
 // Returns the number of points. Throws Error{io}.
 std::uint64_t write_ply(const Explanation& explanation, const Whence& whence,
                         const std::string& path);
 
-// By term of filter::kTermNames: blue, orange, sky blue, green, yellow, vermilion, purple,
-// black; distinct
-// to colour-blind eyes, too (Okabe and Ito).
+// By term of filter::kTermNames: blue, orange, sky blue, green, yellow, vermilion, purple, black;
+// distinct to colour-blind eyes, too (Okabe and Ito).
 inline constexpr std::uint8_t kTermColours[8][3] = {{0, 114, 178},   {230, 159, 0},  {86, 180, 233},
                                                     {0, 158, 115},   {240, 228, 66}, {213, 94, 0},
                                                     {204, 121, 167}, {0, 0, 0}};
