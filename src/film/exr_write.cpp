@@ -9,6 +9,10 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "core/error.h"
 #include "core/output_file.h"
@@ -96,7 +100,7 @@ class Writer {
     }
     check(exr_write_header(context_));
   }
-  void write_chunk(std::size_t line, const std::vector<std::uint8_t>& bytes) {
+  void write_chunk(std::size_t line, std::span<const std::uint8_t> bytes) {
     check(exr_write_scanline_chunk(context_, part_, static_cast<int>(line), bytes.data(),
                                    bytes.size()));
   }
@@ -125,19 +129,36 @@ class Writer {
 
 // The lines [first, last) as the format has them: of each line all channels in the order of their
 // names.
-std::vector<std::uint8_t> packed(const Image& image, std::span<const Layer* const> layers,
-                                 std::size_t first, std::size_t last) {
+void pack(const Image& image, std::span<const Layer* const> layers, std::size_t first,
+          std::size_t last, std::uint8_t* to) {
   const std::size_t row = image.width * sizeof(float);
-  std::vector<std::uint8_t> bytes((last - first) * layers.size() * row);
-  std::uint8_t* to = bytes.data();
   for (std::size_t y = first; y < last; ++y) {
     for (const Layer* layer : layers) {
       std::memcpy(to, layer->values.data() + y * image.width, row);
       to += row;
     }
   }
-  return bytes;
 }
+
+// What no thread works with now; as many as there are threads.
+class Idle {
+ public:
+  [[nodiscard]] ExrZip take() {
+    const std::scoped_lock lock(mutex_);
+    if (zips_.empty()) return {};
+    ExrZip zip = std::move(zips_.back());
+    zips_.pop_back();
+    return zip;
+  }
+  void give(ExrZip zip) {
+    const std::scoped_lock lock(mutex_);
+    zips_.push_back(std::move(zip));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<ExrZip> zips_;
+};
 
 }  // namespace
 
@@ -150,12 +171,18 @@ void write_exr(const std::string& path, const Image& image) {
   Writer writer(path, file.temporary_path());
   writer.write_header(image);
   const std::size_t chunks = core::range_count(image.height, kLines);
+  Idle idle;
   std::vector<std::vector<std::uint8_t>> done(std::min(chunks, kBatch));
   for (std::size_t begin = 0; begin < chunks; begin += kBatch) {
     const std::size_t count = std::min(kBatch, chunks - begin);
     core::parallel_for(count, 1, [&](std::size_t k, std::size_t) {
-      const std::size_t first = (begin + k) * kLines;
-      done[k] = exr_zip(packed(image, layers, first, std::min(image.height, first + kLines)));
+      const std::size_t first = (begin + k) * kLines, last = std::min(image.height, first + kLines);
+      ExrZip zip = idle.take();
+      pack(image, layers, first, last,
+           zip.room((last - first) * layers.size() * image.width * sizeof(float)).data());
+      const auto bytes = zip.zip();
+      done[k].assign(bytes.begin(), bytes.end());
+      idle.give(std::move(zip));
     });
     for (std::size_t k = 0; k < count; ++k) writer.write_chunk((begin + k) * kLines, done[k]);
   }

@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <filesystem>
+#include <ranges>
 
 #include "core/error.h"
 #include "core/output_file.h"
@@ -9,20 +10,18 @@
 
 namespace psf::film {
 
-constexpr std::size_t kGrain = 16384;  // pixels
-
 void Image::add(const std::string& prefix, const std::string& suffixes,
                 std::span<const float> values) {
   assert(values.size() == width * height * suffixes.size());
-  for (std::size_t k = 0; k < suffixes.size(); ++k) {
-    Layer layer{prefix + suffixes[k], std::vector<float>(width * height)};
-    core::parallel_for(width * height, kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t pixel = begin; pixel < end; ++pixel) {
-        layer.values[pixel] = values[pixel * suffixes.size() + k];
-      }
-    });
-    layers.push_back(std::move(layer));
-  }
+  const std::size_t first = layers.size(), count = suffixes.size();
+  layers.resize(first + count);
+  core::parallel_for(count, 1, [&](std::size_t k, std::size_t) {
+    const auto component =
+        std::views::iota(std::size_t{0}, width * height) |
+        std::views::transform([&](std::size_t pixel) { return values[pixel * count + k]; });
+    layers[first + k].channel = prefix + suffixes[k];
+    layers[first + k].values.assign(component.begin(), component.end());
+  });
 }
 
 const std::vector<float>* Image::find(const std::string& channel) const {
