@@ -44,6 +44,16 @@ std::vector<float> Film::mean() const {
   return result;
 }
 
+std::vector<float> Film::mean(std::size_t component) const {
+  std::vector<float> result(count_.size());
+  for (std::size_t pixel = 0; pixel < count_.size(); ++pixel) {
+    if (!has_path(pixel)) continue;
+    result[pixel] =
+        static_cast<float>(sum_[3 * pixel + component] / static_cast<double>(count_[pixel]));
+  }
+  return result;
+}
+
 std::vector<float> Film::filled_mean() const {
   std::vector<float> result = mean();
   std::vector<std::size_t> holes;

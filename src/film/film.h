@@ -27,6 +27,8 @@ class Film {
   [[nodiscard]] std::size_t height() const { return height_; }
   // (height, width, 3) means; 0 where a pixel has no path.
   [[nodiscard]] std::vector<float> mean() const;
+  // (height, width) of them: 0, 1 or 2.
+  [[nodiscard]] std::vector<float> mean(std::size_t component) const;
   // The same, but that a pixel without path has the mean of the paths of the smallest square of
   // 2 x 2, 4 x 4, 8 x 8, ... pixels, aligned to its size, that it lies in and that has any.
   [[nodiscard]] std::vector<float> filled_mean() const;

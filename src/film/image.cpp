@@ -2,7 +2,6 @@
 
 #include <cassert>
 #include <filesystem>
-#include <ranges>
 
 #include "core/error.h"
 #include "core/output_file.h"
@@ -16,11 +15,10 @@ void Image::add(const std::string& prefix, const std::string& suffixes,
   const std::size_t first = layers.size(), count = suffixes.size();
   layers.resize(first + count);
   core::parallel_for(count, 1, [&](std::size_t k, std::size_t) {
-    const auto component =
-        std::views::iota(std::size_t{0}, width * height) |
-        std::views::transform([&](std::size_t pixel) { return values[pixel * count + k]; });
-    layers[first + k].channel = prefix + suffixes[k];
-    layers[first + k].values.assign(component.begin(), component.end());
+    layers[first + k] = {prefix + suffixes[k], std::vector<float>(width * height)};
+    for (std::size_t pixel = 0; pixel < width * height; ++pixel) {
+      layers[first + k].values[pixel] = values[pixel * count + k];
+    }
   });
 }
 

@@ -3,18 +3,11 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/parallel.h"
 #include "study/pixel_bands.h"
 
 namespace psf::study {
 namespace {
-
-// One of the three values of every pixel.
-std::vector<float> component(const std::vector<float>& triples, std::size_t k) {
-  std::vector<float> values(triples.size() / 3);
-  for (std::size_t pixel = 0; pixel < values.size(); ++pixel)
-    values[pixel] = triples[3 * pixel + k];
-  return values;
-}
 
 Rgb path_radiance(const Rgb& u, const Rgb& alpha, const Rgb& c) {
   return {u.x + alpha.x * c.x, u.y + alpha.y * c.y, u.z + alpha.z * c.z};
@@ -78,15 +71,25 @@ film::Image CameraPictures::image() const {
   film::Image image;
   image.width = filtered_.width();
   image.height = filtered_.height();
-  image.add("", "RGB", filtered_.mean());
-  if (layers_.unfiltered) image.add("unfiltered-input.", "RGB", unfiltered());
-  if (layers_.neighbors || layers_.radius) {
-    const std::vector<float> details = details_.mean();
-    if (layers_.neighbors) image.add("neighbors.", "Y", component(details, 0));
-    if (layers_.radius) image.add("radius.", "Y", component(details, 1));
+  struct Plane {
+    std::string channel;
+    const film::Film* film;
+    std::size_t component;
+  };
+  std::vector<Plane> planes = {{"R", &filtered_, 0}, {"G", &filtered_, 1}, {"B", &filtered_, 2}};
+  if (layers_.neighbors) planes.push_back({"neighbors.Y", &details_, 0});
+  if (layers_.radius) planes.push_back({"radius.Y", &details_, 1});
+  for (std::size_t k = 0; layers_.albedo && k < 3; ++k) {
+    planes.push_back({std::string("albedo.") + "RGB"[k], &albedo_, k});
   }
-  if (layers_.albedo) image.add("albedo.", "RGB", albedo_.mean());
-  if (layers_.normal) image.add("normal.", "XYZ", normal_.mean());
+  for (std::size_t k = 0; layers_.normal && k < 3; ++k) {
+    planes.push_back({std::string("normal.") + "XYZ"[k], &normal_, k});
+  }
+  image.layers.resize(planes.size());
+  core::parallel_for(planes.size(), 1, [&](std::size_t k, std::size_t) {
+    image.layers[k] = {planes[k].channel, planes[k].film->mean(planes[k].component)};
+  });
+  if (layers_.unfiltered) image.add("unfiltered-input.", "RGB", unfiltered());
   return image;
 }
 

@@ -92,8 +92,10 @@ void print(const study::Tuning& tuning, const study::Dump& dump) {
     fmt::print("not sure: its error may be more than {:.0f}% above that of {} of the {} sets\n",
                kPercent * study::kTolerance, doubtful, tuning.rows.size());
   }
-  fmt::print("u's share of the noise, which no parameter reaches: {}; {:.3g} of each error\n",
-             share_text(tuning.noise), tuning.u_variance);
+  fmt::print(
+      "u's share of the noise, which no parameter reaches: {}; each error has {:.3g} of u and "
+      "{:.3g} of what u and the rest have in common\n",
+      share_text(tuning.noise), tuning.u_variance, tuning.u_covariance);
   if (!tuning.has_independent_paths) {
     const std::string& sampler = dump.metadata().sampler;
     fmt::print(
@@ -158,6 +160,7 @@ void run(const TuneOptions& options, filter::TermSet asked) {
       {"epsilon", options.epsilon},
       {"unfiltered", tuning.unfiltered},
       {"u_variance", tuning.u_variance},
+      {"u_covariance", tuning.u_covariance},
       {"noise", noise_json(std::span(&tuning.noise, 1), std::span(&camera, 1))},
       {"constant", tuning.constant},
       {"correlation", tuning.correlation},
