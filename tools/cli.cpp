@@ -98,7 +98,7 @@ void set_example(CLI::App& command, const std::string& example) {
 
 void keep_freed_memory() {
 #ifdef __GLIBC__
-  constexpr int kLargestKept = 16 << 20, kMostKept = 256 << 20;  // bytes; larger arrays go back
+  constexpr int kLargestKept = 32 << 20, kMostKept = 256 << 20;  // bytes; larger arrays go back
   mallopt(M_MMAP_THRESHOLD, kLargestKept);
   mallopt(M_TRIM_THRESHOLD, kMostKept);
 #endif

@@ -85,11 +85,19 @@ film::Image CameraPictures::image() const {
   for (std::size_t k = 0; layers_.normal && k < 3; ++k) {
     planes.push_back({std::string("normal.") + "XYZ"[k], &normal_, k});
   }
+  // Where pixels have no path of their own, filled_mean() takes those around.
+  bool is_whole = true;
+  for (std::size_t pixel = 0; pixel < image.width * image.height; ++pixel) {
+    is_whole = is_whole && unfiltered_.has_path(pixel);
+  }
+  for (std::size_t k = 0; layers_.unfiltered && is_whole && k < 3; ++k) {
+    planes.push_back({std::string("unfiltered-input.") + "RGB"[k], &unfiltered_, k});
+  }
   image.layers.resize(planes.size());
   core::parallel_for(planes.size(), 1, [&](std::size_t k, std::size_t) {
     image.layers[k] = {planes[k].channel, planes[k].film->mean(planes[k].component)};
   });
-  if (layers_.unfiltered) image.add("unfiltered-input.", "RGB", unfiltered());
+  if (layers_.unfiltered && !is_whole) image.add("unfiltered-input.", "RGB", unfiltered());
   return image;
 }
 
