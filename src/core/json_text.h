@@ -1,4 +1,4 @@
-// JSON of tools and studies as text: made here alone, because names are bytes and JSON is UTF-8.
+// JSON as text: the one place where it is made, because names are bytes and JSON is UTF-8.
 #pragma once
 
 #include <string>

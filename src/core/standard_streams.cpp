@@ -19,19 +19,16 @@ void open_standard_streams() {
     // The lowest that is free is what open() gives. The wrong way round: reading and writing fail.
     static_cast<void>(::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY));
   }
-  constexpr std::size_t kBuffer = 1 << 20;  // bytes: more than any verb prints
-  if (::isatty(STDOUT_FILENO) == 0) std::setvbuf(stdout, nullptr, _IOFBF, kBuffer);
 }
 
 void flush_standard_output() {
-  // What failed while it was printed, beyond the buffer, left no reason behind.
-  const bool failed_before = std::ferror(stdout) != 0;
   errno = 0;
-  const bool failed_now = std::fflush(stdout) != 0;
-  if (!failed_now && !failed_before) return;
-  throw Error(ErrorCode::io,
-              std::string("standard output: ") +
-                  (failed_now && errno != 0 ? std::strerror(errno) : "cannot be written"));
+  const bool failed_before = std::ferror(stdout) != 0;
+  if (std::fflush(stdout) == 0 && !failed_before) return;
+  // What failed while it was printed is tried no more: a byte more tells why.
+  if (errno == 0) static_cast<void>(::write(STDOUT_FILENO, "\n", 1));
+  throw Error(ErrorCode::io, std::string("standard output: ") +
+                                 (errno == 0 ? "cannot write" : std::strerror(errno)));
 }
 
 void say(std::string_view text) noexcept {

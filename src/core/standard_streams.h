@@ -6,13 +6,11 @@
 namespace psf::core {
 
 // Once, before any file is opened: one of the three that is closed would give its number to a file
-// of ours, which would then get the program's text. What is written to it fails instead. Standard
-// output that is no terminal gets a buffer for all that is printed, so that it fails in
-// flush_standard_output(), which can say why.
+// of ours, which would then get the program's text. What is written to it fails instead.
 void open_standard_streams();
 
 // Throws Error{io} "standard output: No space left on device" where what was printed did not get
-// out; "cannot be written" where it failed before and left no reason.
+// out.
 void flush_standard_output();
 
 // A line on stderr; what does not print in `text` is escaped, so that it is one. Nothing where it

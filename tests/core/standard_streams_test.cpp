@@ -49,43 +49,6 @@ TEST_CASE("text that a full disk does not take is an I/O error") {
   CHECK(flush_to("/dev/null") == 0);
 }
 
-TEST_CASE("what failed before is an error, and nothing is written to say so") {
-  std::fflush(stdout);
-  const TempFolder folder;
-  const std::string path = folder / "out";
-  const int code = in_a_process([&] {
-    dup2(open("/dev/full", O_WRONLY), STDOUT_FILENO);
-    std::fputs("text", stdout);
-    std::fflush(stdout);
-    dup2(open(path.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
-    try {
-      psf::core::flush_standard_output();
-    } catch (const psf::Error& error) {
-      return static_cast<int>(error.code());
-    }
-    return 0;
-  });
-  CHECK(code == 4);
-  std::ifstream in(path, std::ios::binary);
-  CHECK(std::string{std::istreambuf_iterator<char>(in), {}}.empty());
-}
-
-TEST_CASE("the reason is said of text that is longer than a block") {
-  std::fflush(stdout);
-  const int code = in_a_process([] {
-    dup2(open("/dev/full", O_WRONLY), STDOUT_FILENO);
-    psf::core::open_standard_streams();
-    for (int line = 0; line < 10000; ++line) std::fputs("text that is long\n", stdout);
-    try {
-      psf::core::flush_standard_output();
-    } catch (const psf::Error& error) {
-      return std::string(error.what()).ends_with("No space left on device") ? 4 : 1;
-    }
-    return 0;
-  });
-  CHECK(code == 4);
-}
-
 TEST_CASE("no file gets the number of a standard stream") {
   std::fflush(stdout);
   const int lowest = in_a_process([] {
