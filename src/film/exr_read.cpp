@@ -1,4 +1,5 @@
 // Every channel of an EXR of ours.
+#include <IexErrnoExc.h>
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
@@ -62,6 +63,8 @@ Image read_exr(const std::string& path) {
     throw Error(error.code(), one_line(error.what()));
   } catch (const std::bad_alloc&) {
     throw;
+  } catch (const Iex::EmfileExc& error) {
+    throw Error(ErrorCode::io, path + ": cannot open: " + one_line(error.what()));
   } catch (const std::exception& error) {
     throw Error(ErrorCode::bad_input,
                 path + ": no readable EXR picture: " + one_line(error.what()));

@@ -1,5 +1,6 @@
 #include "film/picture.h"
 
+#include <IexErrnoExc.h>
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfInputPart.h>
@@ -223,6 +224,8 @@ Picture read_picture(const std::string& path, const PictureRequest& request) {
     throw Error(error.code(), one_line(error.what()));
   } catch (const std::bad_alloc&) {
     throw;
+  } catch (const Iex::EmfileExc& error) {
+    throw Error(ErrorCode::io, path + ": cannot open: " + one_line(error.what()));
   } catch (const std::exception& error) {
     refuse(path, "no readable EXR picture: " + one_line(error.what()));
   }
