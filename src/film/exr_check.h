@@ -1,7 +1,8 @@
 // Whether what an EXR declares of itself can be true, before anything is done for it.
 #pragma once
 
-#include <cstddef>
+#include <ImfForward.h>
+
 #include <string>
 
 namespace psf::film {
@@ -15,7 +16,7 @@ void check_exr(const std::string& path);
 // by `kMostPixels` where its compression has no bound; what other parts hold does not matter.
 // Throws Error{bad_input} where the part is damaged or has deep pixels, Error{limit} for more than
 // kMostPixels.
-void check_part(const std::string& path, std::size_t part);
+void check_part(const std::string& path, const Imf::Header& part);
 
 // What OpenEXR or a file says, as one line: control characters become spaces.
 [[nodiscard]] std::string one_line(std::string text);

@@ -28,9 +28,9 @@ Imf::Slice slice(const std::vector<float>& values, std::size_t width) {
 Image read_exr(const std::string& path) {
   try {
     check_exr(path);
-    check_part(path, 0);
     // Not the table of chunks: see picture.cpp.
     Imf::MultiPartInputFile file(path.c_str(), 0, false);
+    check_part(path, file.header(0));
     Imf::InputPart input(file, 0);
     const Imath::Box2i window = input.header().dataWindow();
     Image image;

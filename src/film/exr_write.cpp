@@ -140,7 +140,7 @@ void pack(const Image& image, std::span<const Layer* const> layers, std::size_t 
   }
 }
 
-// What no thread works with now; as many as there are threads.
+// The buffers that no thread uses at the moment. There are never more than threads at work.
 class Idle {
  public:
   [[nodiscard]] ExrZip take() {

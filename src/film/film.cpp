@@ -9,8 +9,12 @@ namespace {
 
 constexpr std::size_t kGrain = 16384;  // pixels
 
+float mean_of(double sum, std::uint64_t count) {
+  return static_cast<float>(sum / static_cast<double>(count));
+}
+
 void set_mean(const double* sum, std::uint64_t count, float* to) {
-  for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(sum[c] / static_cast<double>(count));
+  for (int c = 0; c < 3; ++c) to[c] = mean_of(sum[c], count);
 }
 
 // Sums over squares of pixels.
@@ -47,11 +51,13 @@ std::vector<float> Film::mean() const {
 std::vector<float> Film::mean(std::size_t component) const {
   std::vector<float> result(count_.size());
   for (std::size_t pixel = 0; pixel < count_.size(); ++pixel) {
-    if (!has_path(pixel)) continue;
-    result[pixel] =
-        static_cast<float>(sum_[3 * pixel + component] / static_cast<double>(count_[pixel]));
+    if (has_path(pixel)) result[pixel] = mean_of(sum_[3 * pixel + component], count_[pixel]);
   }
   return result;
+}
+
+bool Film::has_path_everywhere() const {
+  return std::find(count_.begin(), count_.end(), 0) == count_.end();
 }
 
 std::vector<float> Film::filled_mean() const {

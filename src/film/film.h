@@ -33,6 +33,7 @@ class Film {
   // 2 x 2, 4 x 4, 8 x 8, ... pixels, aligned to its size, that it lies in and that has any.
   [[nodiscard]] std::vector<float> filled_mean() const;
   [[nodiscard]] bool has_path(std::size_t pixel) const { return count_[pixel] > 0; }
+  [[nodiscard]] bool has_path_everywhere() const;
 
  private:
   std::size_t width_, height_;

@@ -189,9 +189,9 @@ Picture read(const std::string& path, const PictureRequest& request) {
   }
   const ExrLayer layer =
       choose_layer(path, exr_layers(parts), request.layer, request.fallback, request.option);
-  check_part(path, layer.part);
   const auto part = static_cast<int>(layer.part);
   const Imf::Header& header = file.header(part);
+  check_part(path, header);
   check_meaning(path, header);
   if (!file.partComplete(part)) {
     refuse(path, "is incomplete, some of its pixels were never written");

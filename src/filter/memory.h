@@ -9,7 +9,8 @@ namespace psf::filter {
 
 // Bytes a record at most, beside the records themselves; the radius is counted here. What the sort
 // needs (44) is given back before the tree is built, which needs more.
-// Not counted: 20 bytes of scaled.h, for a block whose lengths need another unit, as no usual ones do.
+// Not counted: 20 bytes of scaled.h, for a block whose lengths need another unit, as no usual ones
+// do.
 [[nodiscard]] inline std::uint64_t memory_per_record(const Parameters& parameters) {
   constexpr std::uint64_t kVector = 12, kWord = 4, kSum = 24;  // three floats; three doubles
   constexpr std::uint64_t kGroup = 16, kQuad = 4;              // records, of engine/tree.h

@@ -109,10 +109,9 @@ Accessor accessor_at(GltfLoad& load, const JsonCursor& index) {
   // Before anything is allocated: without bufferView no byte of the file stands behind the count.
   const std::size_t most = a.json.find("bufferView") ? kMaxPrimitives * 3 : kMaxZeros;
   if (count > most) {
-    throw Error(
-        ErrorCode::limit,
-        fmt::format("{}: {} elements{} are more than psf takes ({})", a.json.where_exactly(), count,
-                    most == kMaxZeros ? " without bufferView" : "", most));
+    throw Error(ErrorCode::limit,
+                fmt::format("{}: {} elements{} are more than psf takes ({})", a.json.where(), count,
+                            most == kMaxZeros ? " without bufferView" : "", most));
   }
   a.count = static_cast<std::size_t>(count);
   return a;

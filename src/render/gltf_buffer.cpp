@@ -62,7 +62,7 @@ std::vector<unsigned char> read_file(const JsonCursor& uri, const std::string& p
   try {
     return read_whole<std::vector<unsigned char>>(path);
   } catch (const Error& error) {
-    throw Error(error.code(), uri.where_exactly() + ": " + error.what());
+    throw Error(error.code(), uri.where() + ": " + error.what());
   }
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/interrupt.h"
 #include "formats/error.h"
 #include "render/gltf_parts.h"
 #include "render/shapes.h"
@@ -112,10 +111,10 @@ void add_primitive(GltfLoad& load, const JsonCursor& primitive, const std::strin
   mesh.triangles = to_triangles(indices, mode);
   if (mesh.triangles.size() > (kMaxPrimitives - load.triangles) / placements.size() ||
       mesh.positions.size() > UINT32_MAX / placements.size()) {
-    throw Error(ErrorCode::limit,
-                fmt::format("{}: {} copies of {} triangles are more than psf takes ({} in a scene)",
-                            primitive.where_exactly(), placements.size(), mesh.triangles.size(),
-                            kMaxPrimitives));
+    throw Error(
+        ErrorCode::limit,
+        fmt::format("{}: {} copies of {} triangles are more than psf takes ({} in a scene)",
+                    primitive.where(), placements.size(), mesh.triangles.size(), kMaxPrimitives));
   }
   load.triangles += mesh.triangles.size() * placements.size();
   Mesh all;
@@ -149,7 +148,7 @@ void add_gltf_mesh(GltfLoad& load, const JsonCursor& index, const std::string& n
                    std::span<const Imath::M44d> placements) {
   const JsonCursor mesh = load.element("meshes", index, "mesh");
   load.check_keys(mesh, {"primitives", "weights"});
-  core::throw_if_interrupted("nothing was rendered, nothing is written");
+  stop_where_interrupted();
   const JsonCursor primitives = mesh.at("primitives");
   if (placements.empty()) return;
   for (std::size_t i = 0; i < primitives.size(); ++i) {
@@ -187,7 +186,7 @@ std::vector<Imath::M44d> gltf_instances(GltfLoad& load, const JsonCursor& extens
              scale = read("SCALE", 3);
   if (count.value_or(1) > kMaxCopies) {
     throw Error(ErrorCode::limit, fmt::format("{}: {} copies are more than psf takes ({})",
-                                              extension.where_exactly(), *count, kMaxCopies));
+                                              extension.where(), *count, kMaxCopies));
   }
   std::vector<Imath::M44d> placements(count.value_or(1));
   for (std::size_t i = 0; i < placements.size(); ++i) {

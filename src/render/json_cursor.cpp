@@ -61,12 +61,12 @@ std::string suggestion(std::string_view word, std::span<const std::string_view> 
 }
 
 void JsonCursor::fail(const std::string& problem) const {
-  throw Error(ErrorCode::bad_input, where_exactly() + ": " + problem);
+  throw Error(ErrorCode::bad_input, where() + ": " + problem);
 }
 
-std::string JsonCursor::where_exactly() const {
+std::string JsonCursor::where() const {
   const std::size_t line = line_of(file_, path_);
-  return line == 0 ? where() : fmt::format("{}:{}: {}", file_, line, path());
+  return line == 0 ? file_ + ": " + path() : fmt::format("{}:{}: {}", file_, line, path());
 }
 
 void JsonCursor::expected(const std::string& what) const {

@@ -71,9 +71,8 @@ class JsonCursor {
 
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] std::string path() const { return path_.empty() ? "/" : path_; }  // JSON pointer
-  [[nodiscard]] std::string where() const { return file_ + ": " + path(); }
-  // The same with the line, for errors: the file is read once more to find it.
-  [[nodiscard]] std::string where_exactly() const;
+  // "FILE:LINE: PATH", for errors: the file is read once more to find the line.
+  [[nodiscard]] std::string where() const;
   [[noreturn]] void fail(const std::string& problem) const;
   [[noreturn]] void expected(const std::string& what) const;  // "expected what, got the value"
 

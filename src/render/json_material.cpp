@@ -37,7 +37,7 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
     const auto file = json.find(key);
     if (!file) return kNone;
     return load.textures.load(file->file(), file->text(), use, [&] {
-      return file->where_exactly() + ": material \"" + material.name + "\"";
+      return file->where() + ": material \"" + material.name + "\"";
     });
   };
   material.reflectance_texture = texture("reflectance_map", TextureUse::reflectance);

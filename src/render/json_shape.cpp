@@ -108,7 +108,7 @@ void count_primitives(const JsonCursor& json, std::size_t each, std::size_t copi
   if (each > (kMaxPrimitives - load.primitives) / copies) {
     throw Error(ErrorCode::limit,
                 fmt::format("{}: {} copies of {} triangles are more than psf takes ({} in a scene)",
-                            json.where_exactly(), copies, each, kMaxPrimitives));
+                            json.where(), copies, each, kMaxPrimitives));
   }
   load.primitives += each * copies;
 }
@@ -118,8 +118,7 @@ void add_mesh(const JsonCursor& json, const Mesh& mesh, const std::vector<Placem
               JsonLoad& load) {
   count_primitives(json, mesh.triangles.size(), placements.size(), load);
   if (mesh.positions.size() > std::numeric_limits<std::uint32_t>::max() / placements.size()) {
-    throw Error(ErrorCode::limit,
-                json.where_exactly() + ": the copies have more than 2^32 vertices");
+    throw Error(ErrorCode::limit, json.where() + ": the copies have more than 2^32 vertices");
   }
   Mesh all;
   all.name = mesh.name;
@@ -185,7 +184,7 @@ void add_mesh_file(const JsonCursor& json, int material, bool flipped,
       if (fitting_space(part).exact) scene.wanted.exact = true;
     }
   } catch (const Error& error) {
-    throw Error(error.code(), file.where_exactly() + ": " + error.what());
+    throw Error(error.code(), file.where() + ": " + error.what());
   }
   std::vector<Placement> of_part = placements;
   if (scene.space.exact) {
@@ -237,8 +236,7 @@ void check_shape_keys(const JsonCursor& json, std::size_t kind, bool from_file) 
 std::vector<Placement> combine(const JsonCursor& json, const std::vector<Placement>& inner,
                                const std::vector<Placement>& outer, bool exact) {
   if (inner.size() > kMaxCopies / outer.size()) {
-    throw Error(ErrorCode::limit,
-                fmt::format("{}: more than {} copies", json.where_exactly(), kMaxCopies));
+    throw Error(ErrorCode::limit, fmt::format("{}: more than {} copies", json.where(), kMaxCopies));
   }
   std::vector<Placement> all;
   all.reserve(inner.size() * outer.size());

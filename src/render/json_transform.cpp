@@ -76,8 +76,8 @@ std::vector<Placement> repeat(const JsonCursor& json, const std::vector<Placemen
   const std::size_t count = count_json.integer(1, kMaxCopies);
   if (count > kMaxCopies / placements.size()) {
     throw Error(ErrorCode::limit,
-                fmt::format("{}: {} copies of {} are more than psf takes ({})",
-                            count_json.where_exactly(), count, placements.size(), kMaxCopies));
+                fmt::format("{}: {} copies of {} are more than psf takes ({})", count_json.where(),
+                            count, placements.size(), kMaxCopies));
   }
   const Placement step = read_transform(json.at("step"), exact);
   std::vector<Placement> result;

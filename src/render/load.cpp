@@ -7,7 +7,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "core/interrupt.h"
 #include "formats/error.h"
 #include "render/load_parts.h"
 
@@ -62,7 +61,7 @@ int TextureTable::load(const std::string& scene_file, const std::string& file, T
   const auto [entry, is_new] = known_.try_emplace({path, use}, kNone);
   if (!is_new) return entry->second;
   scene_.files.push_back(path);
-  core::throw_if_interrupted("nothing was rendered, nothing is written");
+  stop_where_interrupted();
   std::error_code ignored;
   if (lenient_ && fs::exists(path, ignored)) {
     const std::string why = Texture::why_unreadable(path);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/interrupt.h"
 #include "formats/error.h"
 #include "render/gltf_parts.h"
 
@@ -62,7 +61,7 @@ void add_node(GltfLoad& load, const JsonCursor& index, const Imath::M44d& parent
   if (!load.nodes.insert(index.whole()).second)
     index.fail(fmt::format("node {} is in the scene twice; glTF has a tree of nodes, copy it",
                            index.whole()));
-  core::throw_if_interrupted("nothing was rendered, nothing is written");
+  stop_where_interrupted();
   load.check_keys(node, {"camera", "children", "skin", "matrix", "mesh", "rotation", "scale",
                          "translation", "weights"});
   if (is_hidden(load, node)) return;

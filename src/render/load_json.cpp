@@ -41,7 +41,7 @@ Environment read_environment(const JsonCursor& json, JsonLoad& load) {
   Environment environment;
   if (const auto map = json.find("map")) {
     environment.texture = load.textures.load(map->file(), map->text(), TextureUse::radiance,
-                                             [&] { return map->where_exactly(); });
+                                             [&] { return map->where(); });
     environment.radiance = Rgb(1);
   }
   if (const auto radiance = json.find("radiance"))

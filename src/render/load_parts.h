@@ -9,11 +9,17 @@
 #include <utility>
 #include <vector>
 
+#include "core/interrupt.h"
 #include "render/load.h"
 #include "render/scene.h"
 #include "render/texture.h"
 
 namespace psf::render {
+
+// Ends loading where ^C or SIGTERM came. Throws Error{interrupted}.
+inline void stop_where_interrupted() {
+  core::throw_if_interrupted("nothing was rendered, nothing is written");
+}
 
 // Most triangles and spheres of a scene, copies of "repeat" included.
 constexpr std::size_t kMaxPrimitives = std::size_t{1} << 27;

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/interrupt.h"
 #include "formats/error.h"
 #include "render/load_parts.h"
 
@@ -184,15 +183,15 @@ Scene load_fitting(const std::string& path, const std::function<void(Scene&)>& l
     scene.space = space;
     try {
       load(scene);
-    } catch (const Error&) {
+    } catch (const Error& error) {
       // Far from the origin what is wrong may be the rounding to float.
-      if (space.exact) throw;
+      if (space.exact || error.code() == ErrorCode::interrupted) throw;
       space.exact = true;
       continue;
     }
     space = fitting_space(scene);
     if (space == scene.space) return scene;
-    core::throw_if_interrupted("nothing was rendered, nothing is written");
+    stop_where_interrupted();
     if (tries == kMostTries) {
       throw Error(ErrorCode::limit, path +
                                         ": no place and size to compute in is found for the "

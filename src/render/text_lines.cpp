@@ -10,7 +10,6 @@
 #include <cstring>
 #include <filesystem>
 
-#include "core/interrupt.h"
 #include "formats/error.h"
 #include "render/load_parts.h"
 #include "render/whole_file.h"
@@ -114,8 +113,7 @@ bool TextLines::next() {
   while (at_ < text_.size()) {
     const std::size_t begin = at_;
     line_ = ++lines_;
-    if (line_ % kLinesBetweenLooks == 0)
-      core::throw_if_interrupted("nothing was rendered, nothing is written");
+    if (line_ % kLinesBetweenLooks == 0) stop_where_interrupted();
     bool comment = false;
     for (;;) {
       const std::size_t end = find_line_end(at_);

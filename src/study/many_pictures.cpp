@@ -5,17 +5,10 @@
 #include <limits>
 
 #include "core/parallel.h"
+#include "study/path_radiance.h"
 
 namespace psf::study {
 namespace {
-
-Rgb unfiltered_of(const filter::Records& records, std::size_t i) {
-  return records.unfiltered.empty() ? Rgb(0, 0, 0) : records.unfiltered[i];
-}
-
-Rgb path_radiance(const Rgb& u, const Rgb& alpha, const Rgb& c) {
-  return {u.x + alpha.x * c.x, u.y + alpha.y * c.y, u.z + alpha.z * c.z};
-}
 
 // c_bar without the radii for which it makes a path overflow that alpha c_bar does not: NaN there.
 std::vector<Rgb> without_overflows(const Rgb& u, const Rgb& alpha, std::span<const Rgb> c_bar) {

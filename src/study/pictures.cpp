@@ -4,17 +4,10 @@
 #include <numeric>
 
 #include "core/parallel.h"
+#include "study/path_radiance.h"
 #include "study/pixel_bands.h"
 
 namespace psf::study {
-namespace {
-
-Rgb path_radiance(const Rgb& u, const Rgb& alpha, const Rgb& c) {
-  return {u.x + alpha.x * c.x, u.y + alpha.y * c.y, u.z + alpha.z * c.z};
-}
-
-}  // namespace
-
 CameraPictures::CameraPictures(const filter::CameraView& camera, const PictureLayers& layers)
     : filtered_(camera.width, camera.height),
       unfiltered_(camera.width, camera.height),
@@ -28,7 +21,7 @@ bool CameraPictures::add(const filter::Records& records, const filter::Average& 
   const filter::Role role = average.roles[i];
   if (role == filter::Role::left_out) return true;
   const std::uint32_t pixel = records.pixel[i];
-  const Rgb u = records.unfiltered.empty() ? Rgb(0, 0, 0) : records.unfiltered[i];
+  const Rgb u = unfiltered_of(records, i);
   const bool vertex = filter::is_query(role);
   if (!vertex) {
     filtered_.add(pixel, u);
@@ -76,28 +69,26 @@ film::Image CameraPictures::image() const {
     const film::Film* film;
     std::size_t component;
   };
-  std::vector<Plane> planes = {{"R", &filtered_, 0}, {"G", &filtered_, 1}, {"B", &filtered_, 2}};
-  if (layers_.neighbors) planes.push_back({"neighbors.Y", &details_, 0});
-  if (layers_.radius) planes.push_back({"radius.Y", &details_, 1});
-  for (std::size_t k = 0; layers_.albedo && k < 3; ++k) {
-    planes.push_back({std::string("albedo.") + "RGB"[k], &albedo_, k});
-  }
-  for (std::size_t k = 0; layers_.normal && k < 3; ++k) {
-    planes.push_back({std::string("normal.") + "XYZ"[k], &normal_, k});
-  }
-  // Where pixels have no path of their own, filled_mean() takes those around.
-  bool is_whole = true;
-  for (std::size_t pixel = 0; pixel < image.width * image.height; ++pixel) {
-    is_whole = is_whole && unfiltered_.has_path(pixel);
-  }
-  for (std::size_t k = 0; layers_.unfiltered && is_whole && k < 3; ++k) {
-    planes.push_back({std::string("unfiltered-input.") + "RGB"[k], &unfiltered_, k});
-  }
+  std::vector<Plane> planes;
+  const auto add = [&](const std::string& prefix, const std::string& suffixes,
+                       const film::Film& film, std::size_t first = 0) {
+    for (std::size_t k = 0; k < suffixes.size(); ++k) {
+      planes.push_back({prefix + suffixes[k], &film, first + k});
+    }
+  };
+  // Where a pixel has no path of its own, unfiltered() takes those around.
+  const bool has_holes = layers_.unfiltered && !unfiltered_.has_path_everywhere();
+  add("", "RGB", filtered_);
+  if (layers_.unfiltered && !has_holes) add("unfiltered-input.", "RGB", unfiltered_);
+  if (layers_.neighbors) add("neighbors.", "Y", details_, 0);
+  if (layers_.radius) add("radius.", "Y", details_, 1);
+  if (layers_.albedo) add("albedo.", "RGB", albedo_);
+  if (layers_.normal) add("normal.", "XYZ", normal_);
   image.layers.resize(planes.size());
   core::parallel_for(planes.size(), 1, [&](std::size_t k, std::size_t) {
     image.layers[k] = {planes[k].channel, planes[k].film->mean(planes[k].component)};
   });
-  if (layers_.unfiltered && !is_whole) image.add("unfiltered-input.", "RGB", unfiltered());
+  if (has_holes) image.add("unfiltered-input.", "RGB", unfiltered());
   return image;
 }
 

@@ -97,7 +97,8 @@ TEST_CASE("every key of a material arrives", "[load][json]") {
   CHECK(!m.two_sided);
   CHECK(m.emits_two_sided);
   CHECK(m.emission == Rgb(2));
-  // Loaded once for each use: reflectances have a range, radiances have none, numbers are no colours.
+  // Loaded once for each use: reflectances have a range, radiances have none, numbers are no
+  // colours.
   CHECK(scene.textures.size() == 3);
   CHECK(scene.materials[3].reflectance_texture == m.reflectance_texture);
   CHECK(m.reflectance_texture != m.emission_texture);
@@ -157,29 +158,24 @@ TEST_CASE("bodies are closed, face outward and have the volume of their formula"
   };
   CHECK(volume(R"({"shape": "box", "material": "white", "min": [-1, 0, 2], "max": [1, 3, 6]})") ==
         Approx(24));
-  CHECK(
-      volume(
-          R"({"shape": "box", "material": "white", "min": [-1, 0, 2], "max": [1, 3, 6],
-              "flip": true})") ==
-      Approx(-24));
+  CHECK(volume(
+            R"({"shape": "box", "material": "white", "min": [-1, 0, 2], "max": [1, 3, 6],
+              "flip": true})") == Approx(-24));
   // A prism over a regular 8-gon.
   const double polygon = 8 * std::sin(2 * std::numbers::pi / 8) / 2;
-  CHECK(
-      volume(
-          R"({"shape": "cylinder", "material": "white", "from": [5, 1, 2], "to": [5, 1, 5],
+  CHECK(volume(
+            R"({"shape": "cylinder", "material": "white", "from": [5, 1, 2], "to": [5, 1, 5],
               "radius": 2,
                    "segments": 8})") == Approx(polygon * 4 * 3));
-  CHECK(
-      volume(
-          R"({"shape": "cylinder", "material": "white", "from": [0, 0, 0], "to": [1, 1, 0],
+  CHECK(volume(
+            R"({"shape": "cylinder", "material": "white", "from": [0, 0, 0], "to": [1, 1, 0],
               "radius": 1,
                    "to_radius": 0, "segments": 8})") == Approx(polygon * std::sqrt(2.0) / 3));
   CHECK(volume(R"({"shape": "lathe", "material": "white", "segments": 8,
                    "profile": [[0, 1], [2, 1], [2, 4], [0, 4]]})") == Approx(polygon * 4 * 3));
   // Panel minus half an ellipse, to what the segments leave of it.
-  CHECK(
-      volume(
-          R"({"shape": "arch", "material": "white", "width": 4, "height": 3, "depth": 0.5,
+  CHECK(volume(
+            R"({"shape": "arch", "material": "white", "width": 4, "height": 3, "depth": 0.5,
               "span": 2, "rise": 2,
                    "segments": 400})") == Approx((12 - std::numbers::pi) * 0.5).epsilon(1e-4));
 }

@@ -1,0 +1,21 @@
+// What a path brings to its pixel, u + alpha c: the same operations for every picture.
+#pragma once
+
+#include <cstddef>
+
+#include "core/vec.h"
+#include "filter/records.h"
+
+namespace psf::study {
+
+// u of a record, 0 where the records have none.
+[[nodiscard]] inline Rgb unfiltered_of(const filter::Records& records, std::size_t i) {
+  return records.unfiltered.empty() ? Rgb(0, 0, 0) : records.unfiltered[i];
+}
+
+// `c`: the contribution, or what stands for it.
+[[nodiscard]] inline Rgb path_radiance(const Rgb& u, const Rgb& alpha, const Rgb& c) {
+  return {u.x + alpha.x * c.x, u.y + alpha.y * c.y, u.z + alpha.z * c.z};
+}
+
+}  // namespace psf::study
