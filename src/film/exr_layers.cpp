@@ -4,19 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <optional>
 
 #include "core/error.h"
+#include "core/lower.h"
 
 namespace psf::film {
 namespace {
-
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 // The channels of one prefix, by what follows it, in lower case.
 using Group = std::map<std::string, std::string>;
@@ -80,7 +75,7 @@ std::vector<ExrLayer> exr_layers(const std::vector<ExrPart>& parts) {
       const std::size_t dot = channel.rfind('.');
       const bool prefixed = dot != std::string::npos;
       groups[prefixed ? channel.substr(0, dot) : ""].emplace(
-          lower(channel.substr(prefixed ? dot + 1 : 0)), channel);
+          core::lower(channel.substr(prefixed ? dot + 1 : 0)), channel);
     }
     for (const auto& [prefix, group] : groups) {
       std::optional<ExrLayer> layer = layer_of(group, prefix);

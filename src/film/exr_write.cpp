@@ -24,14 +24,16 @@ namespace psf::film {
 namespace {
 
 constexpr std::size_t kLines = 16;  // of a chunk, by the format for ZIP
-constexpr std::size_t kBatch = 32;  // chunks that are in memory at once
 
-// A file that OpenEXR writes through, so that what the system says of a failure is not lost.
+// A file that OpenEXR writes through, so that what the system says of a failure is not lost. Small
+// pieces are gathered: a header alone is hundreds, which took longer than the pixels of a small
+// picture.
 class File {
  public:
   explicit File(const std::string& path)
       : descriptor_(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
     if (descriptor_ < 0) error_ = errno;
+    pending_.reserve(kGathered);
   }
   ~File() {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -42,31 +44,54 @@ class File {
   // What OpenEXR calls; -1 where not all bytes were written.
   static std::int64_t write(exr_const_context_t, void* self, const void* bytes, std::uint64_t size,
                             std::uint64_t offset, exr_stream_error_func_ptr_t) {
-    return static_cast<File*>(self)->write(static_cast<const char*>(bytes), size, offset);
+    const auto* first = static_cast<const char*>(bytes);
+    return static_cast<File*>(self)->write({first, size}, offset) ? static_cast<std::int64_t>(size)
+                                                                  : -1;
   }
   void close() {
+    flush();
     if (descriptor_ >= 0 && ::close(descriptor_) != 0) error_ = errno;
     descriptor_ = -1;
   }
   [[nodiscard]] int error() const { return error_; }
 
  private:
-  std::int64_t write(const char* bytes, std::uint64_t size, std::uint64_t offset) {
-    for (std::uint64_t done = 0; done < size;) {
+  static constexpr std::size_t kGathered = 65536;  // bytes
+
+  bool write(std::span<const char> bytes, std::uint64_t offset) {
+    if (offset != offset_ + pending_.size() || pending_.size() + bytes.size() > kGathered) {
+      if (!flush()) return false;
+      offset_ = offset;
+    }
+    if (bytes.size() > kGathered) return write_now(bytes);
+    pending_.insert(pending_.end(), bytes.begin(), bytes.end());
+    return true;
+  }
+  bool flush() {
+    const bool written = write_now(pending_);
+    pending_.clear();
+    return written;
+  }
+  // At offset_, which moves on.
+  bool write_now(std::span<const char> bytes) {
+    while (!bytes.empty()) {
       const ssize_t now =
-          pwrite(descriptor_, bytes + done, size - done, static_cast<off_t>(offset + done));
+          pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset_));
       if (now < 0 && errno == EINTR) continue;
       if (now <= 0) {
         error_ = now < 0 ? errno : EIO;
-        return -1;
+        return false;
       }
-      done += static_cast<std::uint64_t>(now);
+      bytes = bytes.subspan(static_cast<std::size_t>(now));
+      offset_ += static_cast<std::uint64_t>(now);
     }
-    return static_cast<std::int64_t>(size);
+    return true;
   }
 
   int descriptor_;
   int error_ = 0;
+  std::vector<char> pending_;
+  std::uint64_t offset_ = 0;  // of what is pending, or of what comes next
 };
 
 class Writer {
@@ -172,9 +197,11 @@ void write_exr(const std::string& path, const Image& image) {
   writer.write_header(image);
   const std::size_t chunks = core::range_count(image.height, kLines);
   Idle idle;
-  std::vector<std::vector<std::uint8_t>> done(std::min(chunks, kBatch));
-  for (std::size_t begin = 0; begin < chunks; begin += kBatch) {
-    const std::size_t count = std::min(kBatch, chunks - begin);
+  // Few at once: their memory is used again, and fresh memory is what takes long.
+  const std::size_t batch = std::min(chunks, 2 * core::thread_count());
+  std::vector<std::vector<std::uint8_t>> done(batch);
+  for (std::size_t begin = 0; begin < chunks; begin += batch) {
+    const std::size_t count = std::min(batch, chunks - begin);
     core::parallel_for(count, 1, [&](std::size_t k, std::size_t) {
       const std::size_t first = (begin + k) * kLines, last = std::min(image.height, first + kLines);
       ExrZip zip = idle.take();

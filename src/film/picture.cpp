@@ -16,6 +16,7 @@
 #include <new>
 
 #include "core/error.h"
+#include "core/lower.h"
 #include "film/exr_check.h"
 #include "film/exr_layers.h"
 
@@ -54,9 +55,7 @@ void check_meaning(const std::string& path, const Imf::Header& header) {
                              orientation));
   }
   if (const auto* space = header.findTypedAttribute<Imf::StringAttribute>("oiio:ColorSpace")) {
-    std::string name = space->value();
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string name = core::lower(space->value());
     const bool linear = name.find("lin") != std::string::npos;  // "sRGB - Linear", "lin_srgb"
     if (!linear && (name.starts_with("srgb") || name.starts_with("gamma") || name == "rec709")) {
       refuse(path,

@@ -109,14 +109,7 @@ void add_primitive(GltfLoad& load, const JsonCursor& primitive, const std::strin
   if (indices.size() < 3 || (mode == kTriangles && indices.size() % 3 != 0))
     load.leave_out("vertices that are too few for a triangle are left out", primitive.path());
   mesh.triangles = to_triangles(indices, mode);
-  if (mesh.triangles.size() > (kMaxPrimitives - load.triangles) / placements.size() ||
-      mesh.positions.size() > UINT32_MAX / placements.size()) {
-    throw Error(
-        ErrorCode::limit,
-        fmt::format("{}: {} copies of {} triangles are more than psf takes ({} in a scene)",
-                    primitive.where(), placements.size(), mesh.triangles.size(), kMaxPrimitives));
-  }
-  load.triangles += mesh.triangles.size() * placements.size();
+  load.copies.add(primitive, mesh.triangles.size(), mesh.positions.size(), placements.size());
   Mesh all;
   all.name = name;
   all.material = mesh.material;

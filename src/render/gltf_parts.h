@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "render/copy_count.h"
 #include "render/json_cursor.h"
 #include "render/load_parts.h"
 #include "render/scene.h"
@@ -37,8 +38,8 @@ struct GltfLoad {
   std::vector<GltfCoordinates> coordinates;  // of each material of the file
   int first_material = 0;                    // of the file, in Scene::materials
   int default_material = kNone;              // for primitives without one, made when first needed
-  std::size_t triangles = 0;                 // so far
-  std::set<std::uint64_t> nodes;             // that were added
+  CopyCount copies;
+  std::set<std::uint64_t> nodes;  // that were added
 
   GltfLoad(std::string file, Scene& target) : path(std::move(file)), scene(target) {}
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "render/copy_count.h"
 #include "render/json_cursor.h"
 #include "render/load_parts.h"
 #include "render/scene.h"
@@ -15,7 +16,7 @@ namespace psf::render {
 struct JsonLoad {
   Scene& scene;
   TextureTable textures;
-  std::size_t primitives = 0;  // triangles and spheres so far, copies included
+  CopyCount copies;
 
   explicit JsonLoad(Scene& target) : scene(target), textures(target) {}
 };

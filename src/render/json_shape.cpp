@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "formats/error.h"
@@ -103,23 +102,10 @@ Mesh read_arch(const JsonCursor& json) {
   return make_arch(arch);
 }
 
-void count_primitives(const JsonCursor& json, std::size_t each, std::size_t copies,
-                      JsonLoad& load) {
-  if (each > (kMaxPrimitives - load.primitives) / copies) {
-    throw Error(ErrorCode::limit,
-                fmt::format("{}: {} copies of {} triangles are more than psf takes ({} in a scene)",
-                            json.where(), copies, each, kMaxPrimitives));
-  }
-  load.primitives += each * copies;
-}
-
 // Adds the copies of `mesh` as one mesh.
 void add_mesh(const JsonCursor& json, const Mesh& mesh, const std::vector<Placement>& placements,
               JsonLoad& load) {
-  count_primitives(json, mesh.triangles.size(), placements.size(), load);
-  if (mesh.positions.size() > std::numeric_limits<std::uint32_t>::max() / placements.size()) {
-    throw Error(ErrorCode::limit, json.where() + ": the copies have more than 2^32 vertices");
-  }
+  load.copies.add(json, mesh.triangles.size(), mesh.positions.size(), placements.size());
   Mesh all;
   all.name = mesh.name;
   all.material = mesh.material;
@@ -145,7 +131,7 @@ void add_mesh(const JsonCursor& json, const Mesh& mesh, const std::vector<Placem
 template <class T>
 void add_sphere(const JsonCursor& json, const Sphere& sphere, const Imath::Vec3<T>& center,
                 const std::vector<Placement>& placements, JsonLoad& load) {
-  count_primitives(json, 1, placements.size(), load);
+  load.copies.add(json, 1, 0, placements.size());
   for (const Placement& placement : placements) {
     const Imath::Matrix44<T> m(placement);
     // The rows of the linear part: the images of the axes.

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 
+#include "core/lower.h"
 #include "formats/error.h"
 #include "render/load_parts.h"
 
@@ -14,12 +14,6 @@ namespace psf::render {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 // `name` in `folder`, or the entry that differs from it in case alone; empty where there is
 // neither.
@@ -30,7 +24,7 @@ fs::path find_entry(const fs::path& folder, const std::string& name) {
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     const std::string candidate = entry.path().filename().string();
     // The first in alphabetical order: the order of a folder's entries is the file system's.
-    if (lower(candidate) == lower(name) && (found.empty() || entry.path() < found))
+    if (core::lower(candidate) == core::lower(name) && (found.empty() || entry.path() < found))
       found = entry.path();
   }
   return found;
@@ -81,7 +75,7 @@ int TextureTable::load(const std::string& scene_file, const std::string& file, T
 }
 
 void load_mesh_file(const std::string& path, Scene& scene) {
-  const std::string extension = lower(fs::path(path).extension().string());
+  const std::string extension = core::lower(fs::path(path).extension().string());
   if (extension == ".obj") return load_obj(path, scene);
   if (extension == ".gltf" || extension == ".glb") return load_gltf(path, scene);
   throw Error(ErrorCode::bad_input,
@@ -113,7 +107,7 @@ Scene load_scene(const std::string& path, const SceneOverrides& overrides) {
   if (!fs::exists(path, error)) throw Error(ErrorCode::io, path + ": no such file");
   if (fs::is_directory(path, error))
     throw Error(ErrorCode::io, path + ": is a folder, a scene file is needed");
-  const std::string extension = lower(fs::path(path).extension().string());
+  const std::string extension = core::lower(fs::path(path).extension().string());
   Scene scene = load_fitting(path, [&](Scene& empty) {
     if (extension == ".json") {
       load_json(path, empty);

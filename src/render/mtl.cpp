@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
+#include "core/lower.h"
 #include "render/text_lines.h"
 
 namespace psf::render {
@@ -54,13 +54,6 @@ constexpr NumberOption kNumberOptions[] = {{"-bm", 1, 1, {1}},      {"-boost", 1
                                            {"-mm", 2, 2, {0, 1}},   {"-o", 1, 3, {0, 0, 0}},
                                            {"-s", 1, 3, {1, 1, 1}}, {"-t", 1, 3, {0, 0, 0}}};
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
-
 class MtlReader {
  public:
   MtlReader(const std::string& path, LeftOut& left_out) : lines_(path), left_out_(left_out) {}
@@ -72,7 +65,7 @@ class MtlReader {
 
  private:
   void read_statement() {
-    const std::string statement = lower(lines_.statement());
+    const std::string statement = core::lower(lines_.statement());
     if (statement == "newmtl") {
       const std::string_view name = lines_.rest();
       if (name.empty()) lines_.fail("newmtl lacks a name");
@@ -199,11 +192,13 @@ class MtlReader {
 
   // 1 where the option changes nothing, 0 where it does, below where there is none of the name.
   int read_option(std::string_view option) {
-    const auto is_it = [name = lower(option)](const auto& known) { return known.name == name; };
+    const auto is_it = [name = core::lower(option)](const auto& known) {
+      return known.name == name;
+    };
     if (const auto word = std::find_if(std::begin(kWordOptions), std::end(kWordOptions), is_it);
         word != std::end(kWordOptions)) {
       lines_.skip(option.size());
-      const std::string value = lower(next());
+      const std::string value = core::lower(next());
       lines_.skip(value.size());
       return value == word->harmless ? 1 : 0;
     }

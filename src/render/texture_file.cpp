@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 
+#include "core/lower.h"
 #include "formats/error.h"
 
 namespace psf::render {
@@ -16,9 +16,7 @@ using Imath::M33d;
 using Imath::V3d;
 
 bool same_word(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
-    return std::tolower(x) == std::tolower(y);
-  });
+  return core::lower(a) == core::lower(b);
 }
 
 std::optional<std::size_t> find_channel(const OIIO::ImageSpec& spec, const std::string& name) {
