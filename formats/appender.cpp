@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "formats/file.h"
 #include "formats/head_frame.h"
 #include "formats/layout.h"
@@ -135,8 +135,8 @@ Appender::~Appender() {
   }
 }
 
-// Of a resumed file, once: cuts off what is not committed. A slot record of a commit that was cut
-// off before would later name what is none.
+// Before the first write to a resumed file: cuts off what is not committed, and writes the last
+// commit to both slot records, since an old record may name a commit that is cut off.
 void Appender::begin_writing() {
   if (!untouched_) return;
   untouched_ = false;

@@ -1,5 +1,5 @@
-// A path-vertex buffer that grows: its chunks, its commits, its index and its name. What Writer,
-// recover() and concatenate() write with.
+// Appends chunks and commits to a path-vertex buffer, and keeps its index and its name. Writer,
+// recover() and concatenate() write with it.
 #pragma once
 
 #include <cstddef>
@@ -10,28 +10,29 @@
 #include <string>
 #include <vector>
 
+#include "core/unfinished.h"
 #include "formats/codec.h"
 #include "formats/frame_writer.h"
 #include "formats/head.h"
 #include "formats/reader.h"
-#include "formats/unfinished.h"
 #include "formats/writer.h"
 
 namespace psf::formats {
 
 class Appender {
  public:
-  // When a new file gets its name: with the first commit, or by publish().
+  // The moment at which a new file gets its name: its first commit, or publish().
   enum class Appear { first_commit, published };
 
-  // A new file with HEAD and SLOT, under `path`.partial until it appears. Throws Error{bad_input}
-  // for a head that breaks the rules, Error{io} where another process is writing under that name.
+  // Starts a new file with HEAD and SLOT; it is called `path`.partial until it gets its name.
+  // Throws Error{bad_input} for a head that breaks the rules, Error{io} where another process is
+  // writing a file of this name.
   [[nodiscard]] static std::unique_ptr<Appender> create(const std::string& path, const Head& head,
                                                         const WriterOptions& options,
                                                         Appear appear);
-  // Goes on behind the last commit of a file; what follows that commit is cut off before the first
-  // write. Throws Error{bad_input} where the file is no such file, has other channels or another
-  // scene hash than `head`, or was written by a later version.
+  // Goes on behind the last commit of an existing file; what follows this commit is cut off before
+  // the first write. Throws Error{bad_input} where the file is no path-vertex buffer, has other
+  // channels or another scene hash than `head`, or was written by a later version.
   [[nodiscard]] static std::unique_ptr<Appender> resume(const std::string& path, const Head& head,
                                                         const WriterOptions& options);
 
@@ -40,22 +41,22 @@ class Appender {
   // Cuts off what is not committed; removes a file that did not appear.
   ~Appender();
 
-  // To the pass after the last commit.
+  // Appends a chunk of `count` records to the current pass, which began with the last commit.
   void add_chunk(std::uint32_t count, std::span<const EncodedColumn> columns);
-  // Ends that pass.
+  // Ends the current pass.
   void commit(std::span<const std::byte> resume_state);
-  // Commits once more as closed. With Appear::published the file stays locked until publish() gives
-  // it its name.
+  // Commits once more, with the flag "closed". With Appear::published the file stays locked until
+  // publish(), which gives it its name.
   void close();
   void publish();
 
-  // What a new file is called until it appears, `path`.partial with a long name cut: no input of
-  // its own may have that name.
+  // The name of a new file until it appears: `path`.partial, where a long name is cut. No input of
+  // the program that writes it may have this name.
   [[nodiscard]] static std::string partial_path(const std::string& path);
 
   [[nodiscard]] const std::string& path() const { return path_; }  // the final one
-  [[nodiscard]] std::string current_path() const;                  // `path`.partial before
-  [[nodiscard]] const Head& head() const { return head_; }         // of the file
+  [[nodiscard]] std::string current_path() const;                  // `path`.partial before that
+  [[nodiscard]] const Head& head() const { return head_; }         // the file's own
   [[nodiscard]] bool is_open() const { return frames_ && !closed_; }
   [[nodiscard]] std::uint64_t records() const { return committed_; }
   [[nodiscard]] std::uint64_t appended() const { return appended_; }
@@ -64,7 +65,7 @@ class Appender {
   [[nodiscard]] std::span<const std::byte> resume_state() const { return resume_; }
 
  private:
-  // A commit that a later one may build its index on: see README.md, "CMIT".
+  // A commit on whose index that of a later one may build: see README.md, "CMIT".
   struct Anchor {
     std::uint64_t offset = 0, chunks = 0;
   };
@@ -81,18 +82,18 @@ class Appender {
   Appear appear_ = Appear::first_commit;
   bool appeared_ = false, closed_ = false;
   bool untouched_ = false;             // resumed, and nothing written yet
-  SlotRecord last_record_;             // of the commit that was resumed from
-  std::uint32_t last_flags_ = 0;       // of the last commit
-  std::optional<FrameWriter> frames_;  // until the file is done with
-  // Of a new file: removed unless it appears, before frames_ gives up the lock.
-  std::optional<Unfinished> unfinished_;
+  SlotRecord last_record_;             // slot record of the commit that was resumed from
+  std::uint32_t last_flags_ = 0;       // flags of the last commit
+  std::optional<FrameWriter> frames_;  // empty once the file is finished
+  // Set for a new file until it appears. It removes the file before frames_ gives up the lock.
+  std::optional<core::Unfinished> unfinished_;
 
   std::vector<std::byte> resume_;
-  std::vector<ChunkEntry> index_;  // of all chunks
+  std::vector<ChunkEntry> index_;  // entries of all chunks
   Anchor previous_, leap_;
   std::uint64_t committed_end_ = 0, bytes_ = 0;
   std::uint64_t commits_ = 0, passes_ = 0;
-  std::uint64_t appended_ = 0, committed_ = 0;  // records
+  std::uint64_t appended_ = 0, committed_ = 0;  // numbers of records
 };
 
 }  // namespace psf::formats

@@ -1,4 +1,4 @@
-// Little-endian encoding into bytes, and decoding with a cursor that cannot leave them.
+// Little-endian encoding into bytes, and decoding by a cursor that cannot read beyond them.
 #pragma once
 
 #include <concepts>
@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "formats/error.h"
+#include "core/error.h"
 
 namespace psf::formats {
 
@@ -32,7 +32,7 @@ class ByteWriter {
   std::vector<std::byte> bytes_;
 };
 
-// Throws Error{bad_input} where the bytes end too early.
+// Decodes bytes one after the other. Throws Error{bad_input} where they end too early.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> bytes) : rest_(bytes) {}

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <iterator>
 
+#include "core/error.h"
 #include "formats/check_frames.h"
 #include "formats/chunk.h"
-#include "formats/error.h"
 #include "formats/layout.h"
 
 namespace psf::formats {

@@ -9,8 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "core/error.h"
 #include "formats/chunk.h"
-#include "formats/error.h"
 #include "formats/head_frame.h"
 #include "formats/layout.h"
 #include "formats/metadata.h"

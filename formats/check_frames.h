@@ -1,4 +1,4 @@
-// The first half of a check: compares what the frames say of each other.
+// The first half of a check: compares the frames with what other frames say of them.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace psf::formats {
 
-// Adds to the report all but columns and the padding around them, and to the walk the chunks that
-// only an index knows.
+// Adds the results to the report, except those about columns and the padding around them. Adds to
+// the walk the chunks that only an index names.
 void check_frames(const File& file, Walk& walk, CheckReport& report);
 
 // Adds a fault where bytes [from, to) of the frame are not all zero.

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "core/error.h"
 #include "formats/bytes.h"
 #include "formats/crc.h"
-#include "formats/error.h"
 #include "formats/layout.h"
 
 namespace psf::formats {

@@ -6,13 +6,14 @@
 #include <cstring>
 #include <new>
 
+#include "core/error.h"
 #include "formats/crc.h"
-#include "formats/error.h"
 
 namespace psf::formats {
 namespace {
 
-// Of zstd. Measured on 262,144 records of the Cornell box behind the shuffle, one thread: level 1
+// The level of zstd. Measured on 262,144 records of the Cornell box after the shuffle, one thread:
+// level 1
 // packs 1.6 GB/s to 0.284 and unpacks 2.0 GB/s, -1 packs 2.6 to 0.307 and unpacks 2.75, -4
 // packs 2.9 to 0.314. A dump is written in the renderer's time and read many times. Writing costs a
 // render 6.5% in the Cornell box, whose paths take 1.4 us each (10.5% with level 1), and 4.5% in

@@ -1,5 +1,4 @@
-// How a column is stored: raw, or zstd behind a shuffle that puts like bytes of 4-byte words
-// together.
+// Encodes columns: raw, or by zstd after a shuffle that puts equal bytes of 4-byte words together.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +12,10 @@ namespace psf::formats {
 
 enum class Filter : std::uint8_t { none = 0, shuffle4 = 1 };
 
-// Memory that is not cleared, grows as needed and is used again.
+// Memory that is not cleared, grows as needed and is reused.
 class Buffer {
  public:
-  // Contents are not kept.
+  // Returns `size` bytes; earlier contents are lost.
   [[nodiscard]] std::span<std::byte> get(std::size_t size);
 
  private:
@@ -27,19 +26,20 @@ class Buffer {
 struct EncodedColumn {
   Codec codec = Codec::raw;
   Filter filter = Filter::none;
-  std::uint32_t crc = 0;             // of `bytes`
-  std::span<const std::byte> bytes;  // in `raw` or in `storage`
+  std::uint32_t crc = 0;             // checksum of `bytes`
+  std::span<const std::byte> bytes;  // lie in `raw` or `storage` of encode_column()
 };
 
-// Raw where zstd does not make it smaller. Thread-safe.
+// Encodes a column; it stays raw where zstd does not make it smaller. Thread-safe.
 [[nodiscard]] EncodedColumn encode_column(Codec wanted, std::span<const std::byte> raw,
                                           Buffer& storage);
 
-// Fills `out` exactly from a zstd column; throws Error{bad_input} where it does not decode to that
-// many bytes. Thread-safe.
+// Decodes a zstd column to `out`. Throws Error{bad_input} where it does not decode to exactly the
+// size of `out`. Thread-safe.
 void decode_zstd(std::span<const std::byte> stored, Filter filter, std::span<std::byte> out);
 
-// Byte k of all 4-byte words, for k = 0 to 3, then the bytes that fill no word. Sizes are equal.
+// Writes byte k of all 4-byte words, for k = 0 to 3, and then the bytes left over. `in` and `out`
+// have the same size.
 void shuffle4(std::span<const std::byte> in, std::span<std::byte> out);
 void unshuffle4(std::span<const std::byte> in, std::span<std::byte> out);
 

@@ -1,5 +1,5 @@
-// The decoded columns that were read in part last: a reader of small ranges decodes each column
-// once.
+// Keeps the decoded columns that were used last, so that a reader of small ranges decodes each
+// column once.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,10 @@ class ColumnCache {
  public:
   using Bytes = std::shared_ptr<const std::vector<std::byte>>;
 
-  // `most`: bytes kept, but always the newest column. Thread-safe.
+  // `most`: the most bytes to keep; the newest column is always kept. Thread-safe.
   explicit ColumnCache(std::size_t most) : most_(most) {}
 
-  // Null where it is not there.
+  // The column, or null where the cache does not have it.
   [[nodiscard]] Bytes find(std::uint64_t chunk, std::size_t channel);
   void insert(std::uint64_t chunk, std::size_t channel, Bytes bytes);
 
@@ -29,7 +29,7 @@ class ColumnCache {
     Bytes bytes;
   };
   std::mutex mutex_;
-  std::list<Entry> entries_;  // the last used first
+  std::list<Entry> entries_;  // the one used last comes first
   std::size_t most_, held_ = 0;
 };
 

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "core/error.h"
 #include "formats/bytes.h"
 #include "formats/crc.h"
-#include "formats/error.h"
 #include "formats/layout.h"
 
 namespace psf::formats {

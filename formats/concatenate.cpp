@@ -10,10 +10,10 @@
 #include <filesystem>
 #include <memory>
 
+#include "core/error.h"
 #include "formats/appender.h"
 #include "formats/chunk.h"
 #include "formats/codec.h"
-#include "formats/error.h"
 #include "formats/file.h"
 #include "formats/joined_head.h"
 #include "formats/quantize.h"

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "formats/error.h"
+#include "core/error.h"
 
 namespace psf::formats {
 namespace {

@@ -10,13 +10,13 @@ namespace psf::formats {
 
 class File {
  public:
-  // For reading; only regular files.
+  // Opens a regular file for reading.
   [[nodiscard]] static File open(const std::string& path);
-  // For writing, emptied; for writing, as it is. Refused where another process is writing it. The
-  // lock ends with the File.
+  // Open a file for writing: create() empties it, update() leaves it as it is. Throws Error{io}
+  // where another process is writing the file. The lock ends with the File.
   [[nodiscard]] static File create(const std::string& path);
   [[nodiscard]] static File update(const std::string& path);
-  // Whether a process holds the lock of the file `path`; false where there is none.
+  // Whether a process holds the lock of the file `path`; false where there is no such file.
   [[nodiscard]] static bool is_being_written(const std::string& path);
 
   File(File&& other) noexcept;
@@ -26,17 +26,17 @@ class File {
   [[nodiscard]] const std::string& path() const { return path_; }
   void set_path(const std::string& path) { path_ = path; }  // for messages, after a rename
   [[nodiscard]] std::uint64_t size() const;
-  // Whether path() is still the name of this file, and not of another or of none.
+  // Whether path() is still the name of this file, and not of another file or of none.
   [[nodiscard]] bool is_named() const;
 
-  // Fills `out`; a file that ends before is an error. Thread-safe.
+  // Reads bytes until `out` is full; throws where the file ends before. Thread-safe.
   void read_at(std::uint64_t offset, std::span<std::byte> out) const;
   // Writes the parts one behind the other; at most 1024 of them.
   void write_at(std::uint64_t offset, std::span<const std::span<const std::byte>> parts);
   void sync();  // fdatasync
   void truncate(std::uint64_t size);
-  void flush();  // what close() does, and stays open and locked
-  void close();  // throws where the system could not keep what was written
+  void flush();  // like close(), but the file stays open and locked
+  void close();  // throws where the system could not store what was written
 
  private:
   File(std::string path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
@@ -48,7 +48,7 @@ class File {
   int descriptor_ = -1;
 };
 
-// Renames and makes the new name durable when `sync`.
+// Renames a file; with `sync` the new name is made durable.
 void rename_file(const std::string& from, const std::string& to, bool sync);
 
 }  // namespace psf::formats

@@ -1,4 +1,4 @@
-// Frames: the 64 bytes that every one starts with, and its directory.
+// Frames: the prefix of 64 bytes with which every frame starts, and its directory.
 #pragma once
 
 #include <cstddef>
@@ -25,28 +25,28 @@ struct Frame {
   [[nodiscard]] std::uint64_t end() const { return prefix.offset + prefix.length; }
 };
 
-// Prefix and directory with their checksum: what stands at the start of the frame.
+// The start of a frame: prefix and directory, with their checksum.
 [[nodiscard]] std::vector<std::byte> encode_front(const Prefix& prefix,
                                                   std::span<const std::byte> directory);
 
 enum class FrameState {
   whole,
-  cut,  // plausible, but the file ends before it does
-  bad   // no frame of this file stands here
+  cut,  // plausible, but the file ends before the frame
+  bad   // there is no frame of this file
 };
 
 struct FrameResult {
   FrameState state = FrameState::bad;
-  Frame frame;        // where whole
-  std::string fault;  // where not: why
+  Frame frame;        // set where the state is `whole`
+  std::string fault;  // else the reason
 };
 
-// Reads and checks the front of the frame at `offset` of a file of `file_size` bytes; of the file
-// `uuid`, or of any where null. Throws only Error{io}.
+// Reads and checks prefix and directory of the frame at `offset` in a file of `file_size` bytes.
+// The frame must have the given uuid, or any where `uuid` is null. Throws only Error{io}.
 [[nodiscard]] FrameResult read_frame(const File& file, std::uint64_t file_size,
                                      std::uint64_t offset, const Uuid* uuid);
 
-// "CHNK"; bytes that are no printable characters become '?'.
+// The type as text, such as "CHNK"; bytes that are not printable become '?'.
 [[nodiscard]] std::string type_name(std::uint32_t type);
 
 }  // namespace psf::formats

@@ -15,20 +15,20 @@
 
 namespace psf::formats {
 
-// Every call throws Error{io} where the system does; then the file ends with what is no whole
-// frame.
+// Every call throws Error{io} where writing fails; the file may then end with an incomplete frame.
 class FrameWriter {
  public:
-  // Of a new file, which write_start() begins.
+  // For a new file, which write_start() begins.
   FrameWriter(File file, const Uuid& uuid) : file_(std::move(file)), uuid_(uuid) {}
-  // Goes on behind the frame `last` of a file that begins with the frame `head`.
+  // For an existing file that begins with the frame `head`; writing goes on behind the frame
+  // `last`.
   FrameWriter(File file, const Frame& head, const Prefix& last);
 
-  // HEAD and an empty SLOT.
+  // Writes HEAD and an empty SLOT.
   void write_start(const Head& head);
   ChunkEntry write_chunk(std::uint64_t first, std::uint32_t count, std::uint32_t pass,
                          std::span<const EncodedColumn> columns);
-  // Fills in the sections of `commit`. Returns what the slot has to say of it.
+  // Sets the sections of `commit` and writes it. Returns its record for write_slot().
   SlotRecord write_commit(Commit commit, std::span<const ChunkEntry> index,
                           std::span<const std::byte> resume_state);
   void write_slot(std::uint64_t commit_number, const SlotRecord& record);
@@ -47,7 +47,7 @@ class FrameWriter {
   Uuid uuid_;
   std::vector<std::byte> head_front_;  // prefix and directory of HEAD
   std::uint64_t slot_ = 0, end_ = 0;   // offsets
-  std::uint64_t sequence_ = 0;         // of the next frame
+  std::uint64_t sequence_ = 0;         // sequence number of the next frame
 };
 
 }  // namespace psf::formats

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "formats/layout.h"
 
 namespace psf::formats {

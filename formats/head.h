@@ -1,4 +1,4 @@
-// HEAD: what a path-vertex buffer declares about itself, its channels and its metadata.
+// HEAD: the version, features, channels and metadata of a path-vertex buffer.
 #pragma once
 
 #include <array>
@@ -11,16 +11,16 @@
 
 namespace psf::formats {
 
-// Of the file; every frame carries it.
+// The identifier of a file, which every frame has.
 using Uuid = std::array<std::uint8_t, 16>;
 
-// Scalar type of a stored component; values are those of the file.
+// The scalar type of a stored component; the numbers are those in the file.
 enum class Type : std::uint8_t { u8 = 1, u16 = 2, u32 = 3, u64 = 4, f16 = 5, f32 = 6, f64 = 7 };
 
 [[nodiscard]] std::size_t size_of(Type type);
 [[nodiscard]] std::string_view name_of(Type type);
 
-// plain: components are the value. octahedral: u16x2 that encodes a unit vector f32x3.
+// plain: the components are the value. octahedral: two u16 encode a unit vector of three f32.
 enum class Encoding : std::uint8_t { plain = 0, octahedral = 1 };
 
 struct Channel {
@@ -31,7 +31,7 @@ struct Channel {
 
   [[nodiscard]] std::size_t stride() const {
     return size_of(type) * components;
-  }  // stored bytes a record
+  }  // stored bytes per record
   // Components of the value that a reader gets as floats: 3 for an octahedral channel.
   [[nodiscard]] std::size_t decoded_components() const {
     return encoding == Encoding::octahedral ? 3 : components;
@@ -44,22 +44,22 @@ struct Head {
   std::uint16_t minor = 0;
   std::uint32_t required_features = 0;
   std::uint32_t optional_features = 0;
-  std::uint32_t chunk_capacity = 65536;  // most records a chunk, 1 to 2^24
+  std::uint32_t chunk_capacity = 65536;  // most records per chunk, 1 to 2^24
   std::vector<Channel> channels;         // 1 to 256, unique names
   std::string metadata = "{}";           // a JSON object, UTF-8, at most 1 MiB; see metadata.h
-  // What a later minor version put into HEAD's 40 reserved bytes and behind the metadata: of no
-  // meaning here, and kept when copying.
+  // HEAD's 40 reserved bytes and the bytes behind the metadata, where later minor versions may put
+  // values. They mean nothing here and are kept when copying.
   std::array<std::byte, 40> later_fields{};
   std::vector<std::byte> later_bytes;
 
   [[nodiscard]] std::optional<std::size_t> find(std::string_view channel) const;
-  [[nodiscard]] std::size_t stride() const;  // stored bytes a record, all channels
+  [[nodiscard]] std::size_t stride() const;  // stored bytes per record, all channels
 };
 
-// "normal u16 x 2 octahedral"
+// A channel as text: "normal u16 x 2 octahedral".
 [[nodiscard]] std::string to_text(const Channel& channel);
 
-// Whether every dump has it: README.md, "Channels".
+// Whether every dump must have the channel: README.md, "Channels".
 [[nodiscard]] bool is_required_channel(std::string_view name);
 
 // Throws Error{bad_input} that says which limit or rule of version 1 the head breaks (the caller

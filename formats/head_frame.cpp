@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <random>
 
+#include "core/error.h"
 #include "formats/bytes.h"
-#include "formats/error.h"
 #include "formats/layout.h"
 
 namespace psf::formats {

@@ -9,7 +9,7 @@
 #include <set>
 #include <string_view>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "formats/metadata.h"
 
 namespace psf::formats {

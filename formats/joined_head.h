@@ -1,5 +1,5 @@
-// What a path-vertex buffer that is made of others declares: their channels and metadata, compared
-// and merged.
+// The head of a path-vertex buffer that is joined from others: their channels and metadata are
+// compared and merged.
 #pragma once
 
 #include <cstddef>
@@ -21,20 +21,20 @@ struct JoinedInput {
 };
 
 struct JoinedChannel {
-  std::size_t source = 0;  // its number in the inputs
-  Channel channel;         // as written
+  std::size_t source = 0;  // number of the channel in the inputs
+  Channel channel;         // the channel as written
   bool quantized = false;
 };
 
 struct JoinedHead {
   Head head;
   std::vector<JoinedChannel> channels;
-  std::vector<std::string> notes;  // what is allowed and yet worth a look
+  std::vector<std::string> notes;  // remarks about inputs that are allowed but unusual
 };
 
-// Throws Error{bad_input} naming the file that is not of the same scene, channels, cameras or way
-// of rendering as the first, or that lacks a channel, Error{usage} naming one that cannot be
-// dropped or quantised.
+// Throws Error{bad_input} that names a file that differs from the first in scene, channels, cameras
+// or the way of rendering, or that lacks a channel; Error{usage} that names a channel that cannot
+// be dropped or quantised.
 [[nodiscard]] JoinedHead join_heads(std::span<const JoinedInput> inputs,
                                     const ConcatenateOptions& options);
 

@@ -18,11 +18,11 @@ constexpr std::uint16_t kMajor = 1;
 constexpr std::uint16_t kMinor = 0;
 constexpr std::uint32_t kKnownRequiredFeatures = 0;
 
-constexpr std::size_t kPage = 4096;     // frames start on it and are padded to it
-constexpr std::size_t kPrefix = 64;     // bytes every frame starts with
-constexpr std::size_t kAlignment = 64;  // of columns and sections in a frame
+constexpr std::size_t kPage = 4096;     // frames start at multiples of it and are padded to them
+constexpr std::size_t kPrefix = 64;     // size of a frame's prefix
+constexpr std::size_t kAlignment = 64;  // alignment of columns and sections in a frame
 
-// Four characters, read as a little-endian number.
+// The number of a frame type: four characters, read as a little-endian number.
 constexpr std::uint32_t frame_type(const char (&name)[5]) {
   std::uint32_t value = 0;
   for (int k = 3; k >= 0; --k) value = value << 8 | static_cast<std::uint8_t>(name[k]);
@@ -33,7 +33,7 @@ constexpr std::uint32_t kSlotType = frame_type("SLOT");
 constexpr std::uint32_t kChunkType = frame_type("CHNK");
 constexpr std::uint32_t kCommitType = frame_type("CMIT");
 constexpr std::uint32_t kRequiredFrame =
-    1;  // flag: who does not know the type must refuse the file
+    1;  // flag: a reader that does not know the type must refuse the file
 
 constexpr std::size_t kHeadFixed = 64, kChannelEntry = 64, kChannelName = 56;
 constexpr std::size_t kSlotRecord = 32, kSlotFirst = 1024, kSlotSecond = 2048;
@@ -41,7 +41,7 @@ constexpr std::size_t kChunkFixed = 32, kColumnEntry = 24;
 constexpr std::size_t kCommitFixed = 160, kIndexEntry = 32;
 constexpr std::uint32_t kClosed = 1;  // flag of a commit
 
-// Which earlier entries a commit repeats: see README.md, "The index".
+// These decide which earlier entries a commit repeats: see README.md, "The index".
 constexpr std::uint64_t kIndexStep = 64, kIndexLeap = 4096;
 
 constexpr std::size_t kMaxChannels = 256;

@@ -6,7 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "formats/error.h"
+#include "core/error.h"
 
 namespace psf::formats {
 namespace {

@@ -1,4 +1,4 @@
-// The metadata of a path-vertex buffer that psf itself writes and understands, as a struct.
+// The metadata that psf itself writes and understands, as a struct.
 #pragma once
 
 #include <array>
@@ -29,12 +29,12 @@ struct Metadata {
   std::uint64_t seed = 0;
   std::uint32_t block_base = 2;  // b: blocks of b^m contiguous paths are well distributed
   std::uint32_t split = 1;       // continuations averaged into each contribution
-  // Above 1: one path in so many is shaded, whatever it meets; `flags` says so of records without
-  // vertex too.
+  // Above 1: one path in `shade_rate` is shaded, whatever it meets; `flags` says so for records
+  // without vertex too.
   std::uint32_t shade_rate = 1;
-  double vertex_roughness = 0;      // vertex rule: first vertex whose roughness is at least this
+  double vertex_roughness = 0;      // x_i is the first vertex with at least this roughness
   std::string vertex_rule;          // the same in words
-  std::string units;                // of lengths, "scene" where unknown
+  std::string units;                // unit of lengths, "scene" where unknown
   std::vector<CameraInfo> cameras;  // index = value of the channel `camera`
   std::vector<std::string> lights;  // light l owns bit l mod 32 of the channel `visibility`
   // Names; index = value of the channel `material`.

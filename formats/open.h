@@ -1,4 +1,4 @@
-// Opening: finds the last commit and the index of all chunks up to it. README.md, "Opening".
+// Opens a file: finds the last commit and the index of all chunks up to it. README.md, "Opening".
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,12 @@ struct Opened {
   Head head;
   Frame head_frame;
   Uuid uuid{};
-  std::uint64_t file_size = 0;  // when it was opened
+  std::uint64_t file_size = 0;  // size of the file when it was opened
   Frame last;                   // the last commit
   Commit commit;
   std::vector<ChunkEntry> chunks;
-  // The commit whose index begins with the first chunk and that the last one builds on: its offset,
-  // and the chunks up to it. 0, 0 where a commit in between is unreadable.
+  // The offset of the commit whose index begins with the first chunk and on which the last commit
+  // builds, and the number of chunks up to it. Both are 0 where a commit in between is unreadable.
   std::uint64_t root = 0, root_chunks = 0;
 };
 
@@ -30,16 +30,16 @@ struct HeadFrame {
   Head head;
 };
 
-// Throws Error{bad_input} where no HEAD of version 1 stands at the start; `path` stands in the
-// message.
+// Reads the frame HEAD. Throws Error{bad_input} that names the file where no HEAD of version 1 is
+// at its start.
 [[nodiscard]] HeadFrame read_head(const File& file, std::uint64_t file_size);
 
-// Throws Error{bad_input}: no path-vertex buffer, of a later version, without a commit, or damaged
-// before its last commit so that the index is incomplete (the message has the record ranges).
+// Opens a file. Throws Error{bad_input} where it is no path-vertex buffer, was written by a later
+// version, has no commit, or is damaged before its last commit so that the index is incomplete (the
+// message has the record ranges).
 [[nodiscard]] Opened open_buffer(const File& file);
 
-// Says which frames of types that version 1 does not know may be skipped: throws where `prefix` may
-// not.
+// Throws where the frame `prefix`, of a type that version 1 does not know, must not be skipped.
 void check_skippable(const Prefix& prefix, const Head& head);
 
 }  // namespace psf::formats

@@ -40,8 +40,8 @@
 #ifndef PVB_H_INCLUDED
 #define PVB_H_INCLUDED
 
-// What the implementation needs of the system. It works only above the first system header, hence
-// "above every other #include".
+// The features of the system that the implementation needs. The definitions work only above the
+// first system header, hence "above every other #include".
 #ifdef PVB_IMPLEMENTATION
 #ifndef _POSIX_C_SOURCE
 #define _POSIX_C_SOURCE 200809L
@@ -98,8 +98,8 @@ typedef struct pvb_channel {
 // Bits of the channel `flags`.
 enum { PVB_HAS_VERTEX = 1, PVB_IS_SHADED = 2 };
 
-// What goes where, in short; README.md, "From what a renderer has", has the whole of it and an
-// example with numbers.
+// The values of a path, in short; README.md, "From what a renderer has", explains them in full and
+// has an example with numbers.
 // - unfiltered + throughput x contribution is the radiance that the path brings to its one pixel,
 //   with weight 1. Reconstruction filters that splat a path into several pixels have no place here:
 //   write the pixel that the camera ray goes through.
@@ -113,7 +113,7 @@ enum { PVB_HAS_VERTEX = 1, PVB_IS_SHADED = 2 };
 
 // ---- Every file ---------------------------------------------------------------------------------
 
-// What a call returns where it does not return 0.
+// The errors that a call may return; without an error it returns 0.
 enum {
   PVB_USAGE = 2,      // the call is wrong
   PVB_BAD_INPUT = 3,  // the file is damaged, or not the one that is asked for
@@ -124,36 +124,36 @@ enum {
 typedef struct pvb_file pvb_file;
 
 typedef struct pvb_info {
-  uint64_t records, passes;     // committed
+  uint64_t records, passes;     // numbers of committed records and passes
   int closed;                   // the last commit says that the producer is done
-  uint32_t chunk_capacity;      // most records a chunk
+  uint32_t chunk_capacity;      // most records per chunk
   const pvb_channel* channels;  // in the order of the file
   size_t channel_count;
   const char* metadata;  // JSON text, ends with a 0
-  size_t metadata_size;  // without that 0
+  size_t metadata_size;  // without the final 0
   const void* state;     // resume state of the last commit; NULL where its checksum is wrong
   size_t state_size;
-  uint64_t uncommitted;  // bytes behind the last commit when it was opened; normal after a kill
+  uint64_t uncommitted;  // bytes behind the last commit on opening; normal after a kill
 } pvb_info;
 
-// What the file holds by now. Valid until pvb_free(), `state` until the next pvb_commit(). All
-// zeros where the file could not be opened.
+// The present contents of the file. Valid until pvb_free(), `state` until the next pvb_commit().
+// All values are 0 where the file could not be opened.
 const pvb_info* pvb_about(const pvb_file* file);
 
-// The error as one line, or NULL where there is none. Valid until the next call. Of a NULL file:
-// "out of memory", the only reason for which a file is NULL.
+// The error as one line, or NULL where there is none. Valid until the next call. For a NULL file it
+// is "out of memory", the only reason for which a file is NULL.
 const char* pvb_error(const pvb_file* file);
 
-// Gives everything back. A file being written and not closed ends with its last commit and can be
-// resumed; without any commit nothing is left of it. NULL is fine.
+// Frees everything. A file that was being written and is not closed ends with its last commit and
+// can be resumed; without any commit it is removed. `file` may be NULL.
 void pvb_free(pvb_file* file);
 
 // ---- Writing ------------------------------------------------------------------------------------
 
 typedef struct pvb_options {
-  uint32_t chunk_capacity;    // most records a chunk, 1 to 2^24; 0: 65536, or that of the file
+  uint32_t chunk_capacity;    // most records per chunk, 1 to 2^24; 0: 65536, or that of the file
   int no_sync;                // do not wait for the disk: a loss of power may lose commits
-  const unsigned char* uuid;  // 16 bytes; NULL: random. For files that must come out the same
+  const unsigned char* uuid;  // 16 bytes, to make the same file again; NULL: random
 } pvb_options;
 
 // The values of one channel: record i at `data` + i * `stride` bytes, any alignment. A stride of 0
@@ -168,16 +168,17 @@ typedef struct pvb_array {
 #define PVB_FIELD(records, member) {&(records)->member, sizeof *(records)}
 // clang-format on
 
-// Starts a file. It is `path`.partial until the first commit renames it, replacing any file of that
-// name. `metadata`: a JSON object in UTF-8, at most 1 MiB, kept byte for byte; keys: README.md,
-// "Metadata". Refused where another process writes that name. The strings and tables are copied.
+// Starts a file. It is called `path`.partial until the first commit renames it, which replaces any
+// file called `path`. `metadata`: a JSON object in UTF-8, at most 1 MiB, kept byte for byte;
+// README.md, "Metadata", lists the keys. It is an error if another process writes a file of this
+// name. Strings and tables are copied.
 pvb_file* pvb_create(const char* path, const pvb_channel* channels, size_t channel_count,
                      const char* metadata, const pvb_options* options);
 
-// Goes on with an existing file behind its last commit, closed or not; what lies behind that is cut
-// off. Refused, and the file left as it was, where another process writes it, where it is damaged,
-// and where channels or metadata are not the same byte for byte. pvb_about() tells records, passes
-// and resume state so far.
+// Goes on with an existing file behind its last commit, closed or not; what follows this commit is
+// cut off. It is an error, and the file stays as it was, if another process writes it, it is
+// damaged, or channels or metadata are not the same byte for byte. pvb_about() gives the records,
+// passes and resume state so far.
 pvb_file* pvb_resume(const char* path, const pvb_channel* channels, size_t channel_count,
                      const char* metadata, const pvb_options* options);
 
@@ -185,11 +186,11 @@ pvb_file* pvb_resume(const char* path, const pvb_channel* channels, size_t chann
 // are kept bit for bit.
 int pvb_append(pvb_file* file, size_t count, const pvb_array* arrays);
 
-// Ends the pass, which must have records, and brings it to the disk. `state`: up to 64 KiB that you
-// want back from pvb_resume(); NULL and 0 for none.
+// Ends the pass, which must have records, and writes it to the disk. `state`: up to 64 KiB that a
+// later pvb_resume() gives back; NULL and 0 for none.
 int pvb_commit(pvb_file* file, const void* state, size_t state_size);
 
-// Says that the producer is done. Records that are not committed are an error.
+// Marks the file as complete. It is an error if there are records that are not committed.
 int pvb_close(pvb_file* file);
 
 // ---- Reading ------------------------------------------------------------------------------------
@@ -200,12 +201,12 @@ pvb_file* pvb_open(const char* path);
 // Index of a channel in pvb_about()->channels, or -1.
 int pvb_find(const pvb_file* file, const char* channel);
 
-// The records of pass 0, 1, ...: `*first` and how many.
+// The records of a pass, counted from 0: `*first` becomes the first record, `*count` their number.
 int pvb_pass(pvb_file* file, uint64_t pass, uint64_t* first, uint64_t* count);
 
-// Puts records [first, first + count) of a channel to `out`, `stride` bytes apart, as stored. Whole
-// columns are read, checked, and kept for the next call (one per channel). An error concerns that
-// call alone, names chunk and channel, and leaves `out` as it is from the bad chunk on.
+// Writes the records [first, first + count) of a channel to `out`, `stride` bytes apart, as stored.
+// Whole columns are read, checked, and kept for the next call (one per channel). An error affects
+// this call alone, names chunk and channel, and leaves `out` unchanged from the bad chunk on.
 int pvb_read(pvb_file* file, size_t channel, uint64_t first, size_t count, void* out,
              size_t stride);
 
@@ -285,7 +286,7 @@ static const unsigned char pvbi_magic[8] = {0x89, 0x50, 0x56, 0x42, 0x0D, 0x0A, 
 
 enum { PVBI_IDLE, PVBI_READING, PVBI_WRITING, PVBI_DONE };
 
-typedef struct pvbi_entry {  // a chunk, as the index has it
+typedef struct pvbi_entry {  // the entry of a chunk in the index
   uint64_t offset, length, first;
   uint32_t count, pass;
 } pvbi_entry;
@@ -293,8 +294,8 @@ typedef struct pvbi_entry {  // a chunk, as the index has it
 typedef struct pvbi_frame {
   uint64_t offset, length, sequence;
   uint32_t type, flags;
-  size_t size;                     // of the directory
-  const unsigned char* directory;  // in the scratch memory: valid until that is used again
+  size_t size;                     // size of the directory
+  const unsigned char* directory;  // in the scratch memory; valid until its next use
 } pvbi_frame;
 
 typedef struct pvbi_section {
@@ -303,7 +304,7 @@ typedef struct pvbi_section {
 } pvbi_section;
 
 typedef struct pvbi_commit {
-  uint64_t offset, length, sequence;  // of the frame
+  uint64_t offset, length, sequence;  // those of the frame
   uint64_t number, records, chunks, passes, base, first_chunk, foreign;
   uint32_t flags;
   pvbi_section index, state;
@@ -315,10 +316,10 @@ typedef struct pvbi_anchor {  // a commit that the index of a later one may buil
 
 struct pvb_file {
   pvb_info info;
-  int mode, code;  // code: of the error, 0: none
+  int mode, code;  // code: that of the error; 0: no error
   char error[1024];
   uint32_t crc[16][256];
-  char *path, *partial;  // partial: until the first commit
+  char *path, *partial;  // partial: name until the first commit, then NULL
   int fd, replaced;      // replaced: the file that the first commit will replace, locked; or -1
   int no_sync;
 
@@ -327,22 +328,22 @@ struct pvb_file {
   size_t head_size;
   pvb_channel channels[PVBI_MAX_CHANNELS];
   char names[PVBI_MAX_CHANNELS][PVBI_NAME + 1];
-  size_t bytes[PVBI_MAX_CHANNELS];  // a record of each channel
+  size_t bytes[PVBI_MAX_CHANNELS];  // size of a record of each channel
   char* metadata;
   unsigned char* state;
 
-  uint64_t size;       // of the file when it was opened; nothing is read behind it
-  uint64_t slot, end;  // offset of SLOT; where the next frame goes
-  uint64_t sequence;   // of the next frame
+  uint64_t size;       // size of the file when it was opened; nothing is read behind it
+  uint64_t slot, end;  // offsets of SLOT and of the next frame
+  uint64_t sequence;   // sequence number of the next frame
   uint64_t committed_end, commits;
   pvbi_anchor previous, leap;
   pvbi_entry* index;
   size_t chunks, index_room;
   uint64_t appended;  // records in chunks that are written
 
-  unsigned char* chunk;             // the frame being filled, columns placed for a full one
-  size_t place[PVBI_MAX_CHANNELS];  // of each column in it
-  uint32_t filled;                  // records in it
+  unsigned char* chunk;             // the frame being filled; columns have the places of a full one
+  size_t place[PVBI_MAX_CHANNELS];  // place of each column in the frame
+  uint32_t filled;                  // number of records in the frame
 
   unsigned char* scratch;
   size_t scratch_size;
@@ -392,8 +393,8 @@ static void pvbi_make_crc(pvb_file* f) {
   }
 }
 
-// Sixteen bytes a step: f->crc[s][b] is what byte b does s bytes further on. `crc`: of the bytes
-// before, 0 at the start.
+// Computes the checksum, sixteen bytes per step: f->crc[s][b] is the effect of byte b after s more
+// bytes. `crc`: checksum of the preceding bytes, 0 at the start.
 static uint32_t pvbi_crc(const pvb_file* f, uint32_t crc, const void* data, size_t size) {
   const unsigned char* p = PVBI_CAST(const unsigned char*, data);
   crc = ~crc;
@@ -424,7 +425,7 @@ static int pvbi_fail(pvb_file* f, int code, const char* format, ...) {
   return code;
 }
 
-// Of errno.
+// Sets the error to PVB_IO with the text of errno and a remedy.
 static int pvbi_fail_io(pvb_file* f, const char* action) {
   const int error = errno;
   const char* remedy = "";
@@ -442,7 +443,8 @@ static int pvbi_fail_memory(pvb_file* f) {
   return pvbi_fail(f, PVB_LIMIT, "out of memory; use smaller chunks");
 }
 
-// Room for `size` bytes of any use; what it held is gone. NULL where there is none.
+// The scratch memory with room for `size` bytes; its contents are lost. NULL where there is no
+// memory.
 static unsigned char* pvbi_scratch(pvb_file* f, uint64_t size) {
   if (size >= SIZE_MAX) return PVBI_NULL;
   if (f->scratch == PVBI_NULL || f->scratch_size < size) {
@@ -497,7 +499,7 @@ static int pvbi_same_file(const struct stat* a, const struct stat* b) {
   return a->st_dev == b->st_dev && a->st_ino == b->st_ino;
 }
 
-// Opens `path` for this process alone. -1 and an error where that cannot be.
+// Opens and locks `path` for this process alone. Returns -1 and sets an error where it cannot.
 static int pvbi_open_locked(pvb_file* f, const char* path, int flags) {
   int attempt;
   for (attempt = 0; attempt < 100; ++attempt) {
@@ -519,14 +521,15 @@ static int pvbi_open_locked(pvb_file* f, const char* path, int flags) {
       pvbi_fail(f, PVB_IO, "is not a regular file; choose another name");
       return -1;
     }
-    // Between open and lock its writer finished it and gave it another name: not ours to touch.
+    // Between open and lock, another process finished the file and renamed it. Leave it alone.
     close(fd);
   }
   pvbi_fail(f, PVB_IO, "another process is writing it; wait for it or choose another name");
   return -1;
 }
 
-// Holds the file of the final name, if there is one, so that no other process resumes it meanwhile.
+// Locks the file with the final name, if there is one, so that no other process resumes it
+// meanwhile.
 static int pvbi_hold_replaced(pvb_file* f) {
   struct stat held, named;
   if (stat(f->path, &named) != 0) return errno == ENOENT ? 0 : pvbi_fail_io(f, "create");
@@ -541,7 +544,7 @@ static int pvbi_hold_replaced(pvb_file* f) {
   return f->code;
 }
 
-// NAME.partial becomes NAME.
+// Renames NAME.partial to NAME.
 static int pvbi_publish(pvb_file* f) {
   char* slash;
   int folder, result;
@@ -567,7 +570,7 @@ static int pvbi_publish(pvb_file* f) {
 
 // ---- Frames
 
-// Prefix of the frame at `frame`, whose directory of `size` bytes stands behind it already.
+// Writes the prefix of the frame at `frame`, whose directory of `size` bytes already follows it.
 static void pvbi_put_prefix(const pvb_file* f, unsigned char* frame, uint32_t type, uint32_t flags,
                             uint64_t length, uint32_t size) {
   memcpy(frame, pvbi_magic, 8);
@@ -589,7 +592,8 @@ static int pvbi_write_frame(pvb_file* f, const unsigned char* frame, size_t leng
   return 0;
 }
 
-// 1: a valid frame stands at `offset`. 0: none does. -1: error. Takes the uuid from offset 0.
+// Returns 1 where there is a valid frame at `offset`, 0 where there is none, -1 on an error. At
+// offset 0 it takes over the uuid.
 static int pvbi_read_frame(pvb_file* f, uint64_t offset, pvbi_frame* out) {
   unsigned char prefix[PVBI_PREFIX], *directory;
   if (offset >= f->size || f->size - offset < PVBI_PREFIX) return 0;
@@ -622,8 +626,8 @@ static int pvbi_is_known(uint32_t type) {
          type == PVBI_TYPE_CMIT;
 }
 
-// The valid frame at *offset, or on the first page behind it where one stands; *offset becomes its
-// end. 0 at the end of the file, -1 on an error.
+// Finds the valid frame at *offset, or the first on a page behind it, and returns 1; *offset
+// becomes the frame's end. Returns 0 at the end of the file, -1 on an error.
 static int pvbi_next_frame(pvb_file* f, uint64_t* offset, pvbi_frame* out) {
   for (; *offset < f->size; *offset += PVBI_PAGE) {
     const int valid = pvbi_read_frame(f, *offset, out);
@@ -655,7 +659,7 @@ static int pvbi_section_fits(const pvbi_frame* frame, const pvbi_section* sectio
          section->offset <= frame->length && section->length <= frame->length - section->offset;
 }
 
-// Whether the frame is a commit that can be.
+// Whether the frame is a valid commit.
 static int pvbi_decode_commit(const pvbi_frame* frame, pvbi_commit* out) {
   const unsigned char* d = frame->directory;
   pvbi_section head;
@@ -684,14 +688,15 @@ static int pvbi_decode_commit(const pvbi_frame* frame, pvbi_commit* out) {
          pvbi_get64(d + 40) < frame->offset;
 }
 
-// 1, 0 or -1 like pvbi_read_frame.
+// Returns 1, 0 or -1 like pvbi_read_frame.
 static int pvbi_commit_at(pvb_file* f, uint64_t offset, pvbi_commit* out) {
   pvbi_frame frame;
   const int valid = pvbi_read_frame(f, offset, &frame);
   return valid == 1 ? pvbi_decode_commit(&frame, out) : valid;
 }
 
-// A section into the scratch memory: 1, 0 where its checksum is wrong, -1 on an error.
+// Reads a section into the scratch memory. Returns 1, 0 where its checksum is wrong, -1 on an
+// error.
 static int pvbi_read_section(pvb_file* f, const pvbi_commit* commit, const pvbi_section* section) {
   const size_t length = section->length & SIZE_MAX;
   unsigned char* bytes = pvbi_scratch(f, section->length);
@@ -778,7 +783,7 @@ static int pvbi_set_metadata(pvb_file* f, const void* text, size_t size) {
   return 0;
 }
 
-// What a producer declares, as far as it can be wrong.
+// Checks the declarations of a producer.
 static int pvbi_declare(pvb_file* f, const pvb_channel* channels, size_t count,
                         const char* metadata) {
   const char *first = metadata, *last;
@@ -859,7 +864,8 @@ static int pvbi_read_head(pvb_file* f) {
 
 // ---- Opening: README.md, "Opening"
 
-// The last valid commit. PVB_BAD_INPUT where there is none, or the slot promises a later one.
+// Finds the last valid commit. Returns PVB_BAD_INPUT where there is none, or the slot names a later
+// one.
 static int pvbi_find_last(pvb_file* f, pvbi_commit* last) {
   uint64_t offset = f->slot, hint[2][3] = {{0, 0, 0}, {0, 0, 0}};  // offset, length, sequence
   uint64_t promised = 0, promised_at = 0;
@@ -955,7 +961,8 @@ static int pvbi_is_complete(const pvb_file* f, const pvbi_commit* last) {
   return record == last->records && f->chunks == last->chunks && passes == last->passes;
 }
 
-// From the last commit and its bases: 1, 0 where one of them cannot be read, -1 on an error.
+// Reads the index from the last commit and its bases. Returns 1, 0 where one of them cannot be
+// read, -1 on an error.
 static int pvbi_load_index(pvb_file* f, const pvbi_commit* last) {
   pvbi_commit at = *last;
   if (pvbi_reserve_index(f, last->chunks) != 0) return -1;
@@ -991,7 +998,8 @@ static int pvbi_push(pvb_file* f, const pvbi_entry* entry) {
   return 0;
 }
 
-// Where the chain of commits is broken: from every chunk and every index that can be read.
+// Rebuilds the index from every chunk and every index that can be read, where the chain of commits
+// is broken.
 static int pvbi_scan_index(pvb_file* f, const pvbi_commit* last) {
   uint64_t offset = f->slot, next = 0;
   size_t found, k;
@@ -1035,7 +1043,7 @@ static int pvbi_scan_index(pvb_file* f, const pvbi_commit* last) {
                    0ull + next);
 }
 
-// Everything that a reader and a resumed writer need to know. `f->fd` is open.
+// Reads everything that a reader and a resumed writer need. `f->fd` is open.
 static int pvbi_load(pvb_file* f) {
   struct stat status;
   pvbi_commit last;
@@ -1088,7 +1096,8 @@ static pvb_file* pvbi_new(const char* path) {
   return f;
 }
 
-// Every call of `mode` starts here. An error in reading concerns its own call, any other sticks.
+// Every call in `mode` starts here. An error in reading affects its own call; any other error
+// stays.
 static int pvbi_enter(pvb_file* f, int mode) {
   if (f == PVBI_NULL) return PVB_LIMIT;
   if (f->mode == PVBI_READING && mode == PVBI_READING) f->code = 0;
@@ -1116,7 +1125,7 @@ void pvb_free(pvb_file* file) {
   if (file->mode == PVBI_WRITING && file->partial != PVBI_NULL) {
     (void)unlink(file->partial);
   } else if (file->mode == PVBI_WRITING && file->commits > 0) {
-    // Of no use to anyone. Where it fails, readers know what an uncommitted tail is.
+    // Cuts off the uncommitted tail. A failure does no harm, since readers ignore such a tail.
     if (ftruncate(file->fd, PVBI_CAST(off_t, file->committed_end)) != 0) errno = 0;
   }
   if (file->fd >= 0) close(file->fd);
@@ -1136,7 +1145,7 @@ void pvb_free(pvb_file* file) {
 
 // ---- Writing
 
-// Memory of a full chunk, every column at its place.
+// Allocates the memory of a full chunk and places every column.
 static int pvbi_prepare_chunk(pvb_file* f) {
   uint64_t place =
       pvbi_up(PVBI_PREFIX + PVBI_CHUNK + PVBI_COLUMN * f->info.channel_count, PVBI_ALIGN);
@@ -1152,7 +1161,7 @@ static int pvbi_prepare_chunk(pvb_file* f) {
   return f->state == PVBI_NULL ? pvbi_fail_memory(f) : 0;
 }
 
-// Of a commit, in the slot page of a file or in `page`.
+// Writes the slot record of a commit to `to`.
 static void pvbi_put_slot_record(const pvb_file* f, unsigned char* to, uint64_t offset,
                                  uint64_t length, uint64_t sequence) {
   pvbi_put64(to, offset);
@@ -1162,7 +1171,7 @@ static void pvbi_put_slot_record(const pvb_file* f, unsigned char* to, uint64_t 
   pvbi_put32(to + 28, pvbi_crc(f, 0, to, 28));
 }
 
-// HEAD and an empty SLOT.
+// Writes HEAD and an empty SLOT.
 static int pvbi_write_start(pvb_file* f) {
   const uint32_t size =
       (PVBI_HEAD + PVBI_CHANNEL * f->info.channel_count + f->info.metadata_size) & 0xFFFFFFFFu;
@@ -1215,7 +1224,7 @@ pvb_file* pvb_create(const char* path, const pvb_channel* channels, size_t chann
   f->no_sync = options != PVBI_NULL && options->no_sync;
   f->info.chunk_capacity =
       options != PVBI_NULL && options->chunk_capacity != 0 ? options->chunk_capacity : 65536;
-  // A name as long as the file system takes it is cut: its last part to 255 bytes with ".partial".
+  // Where the name would be too long, its last part is cut to 255 bytes with ".partial".
   slash = strrchr(path, '/');
   kept = slash == PVBI_NULL ? 0 : PVBI_CAST(size_t, slash + 1 - path);
   kept += strlen(path + kept) > 247 ? 247 : strlen(path + kept);
@@ -1233,7 +1242,7 @@ pvb_file* pvb_create(const char* path, const pvb_channel* channels, size_t chann
   f->fd = pvbi_open_locked(f, f->partial, O_RDWR | O_CREAT | O_NOFOLLOW);
   if (f->fd < 0) return f;
   f->mode = PVBI_WRITING;
-  // Emptied only now that it is ours.
+  // The file is emptied only after it is locked.
   if (ftruncate(f->fd, 0) != 0) {
     pvbi_fail_io(f, "write");
   } else {
@@ -1277,8 +1286,8 @@ static int pvbi_check_same(pvb_file* f, const pvb_channel* channels, size_t coun
   return 0;
 }
 
-// What is not committed goes, and with it every promise of the slot that has come to nothing: its
-// page is written anew and names the last commit twice.
+// Cuts off what is not committed, and writes the slot's page anew with the last commit in both
+// records, since the old records may name a commit that is cut off.
 static int pvbi_cut_tail(pvb_file* f) {
   unsigned char page[PVBI_PAGE] = {0};
   const uint64_t end = f->end, sequence = f->sequence;
@@ -1380,7 +1389,8 @@ int pvb_append(pvb_file* file, size_t count, const pvb_array* arrays) {
     return pvbi_fail(file, PVB_LIMIT, "more than 2^63 records");
   }
   while (done < count) {
-    // So few at a time that structs are still in the cache when their next member is wanted.
+    // Copies few records at a time, so that the structs are still in the cache for their next
+    // member.
     const size_t room = file->info.chunk_capacity - file->filled, most = room < 256 ? room : 256;
     const size_t taken = count - done < most ? count - done : most;
     for (k = 0; k < file->info.channel_count; ++k) {
@@ -1405,7 +1415,8 @@ static uint64_t pvbi_put_section(const pvb_file* f, unsigned char* frame, unsign
   return pvbi_up(place + length, PVBI_ALIGN);
 }
 
-// The frame CMIT. The commit is number f->commits + 1 and its index starts behind `base`.
+// Builds the frame CMIT. The commit has the number f->commits + 1, and its index starts behind
+// `base`.
 static unsigned char* pvbi_make_commit(pvb_file* f, uint32_t flags, uint64_t passes,
                                        const pvbi_anchor* base, size_t* length) {
   const size_t index_size = (f->chunks - (base->chunks & SIZE_MAX)) * PVBI_ENTRY;
@@ -1553,7 +1564,7 @@ int pvb_pass(pvb_file* file, uint64_t pass, uint64_t* first, uint64_t* count) {
   return 0;
 }
 
-// Why the column of a chunk cannot be read, or NULL where it is in f->column[channel].
+// Reads a column of a chunk to f->column[channel]. Returns NULL, or the reason why it cannot.
 static const char* pvbi_load_column(pvb_file* f, size_t chunk, size_t channel) {
   const pvbi_entry* e = &f->index[chunk];
   const size_t size = f->bytes[channel] * e->count;

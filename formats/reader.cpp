@@ -7,9 +7,9 @@
 #include <cstring>
 #include <utility>
 
+#include "core/error.h"
 #include "formats/chunk.h"
 #include "formats/column_cache.h"
-#include "formats/error.h"
 #include "formats/head_frame.h"
 #include "formats/layout.h"
 #include "formats/open.h"

@@ -9,10 +9,10 @@
 #include <optional>
 #include <utility>
 
+#include "core/error.h"
 #include "formats/appender.h"
 #include "formats/check_frames.h"
 #include "formats/chunk.h"
-#include "formats/error.h"
 #include "formats/file.h"
 #include "formats/layout.h"
 #include "formats/metadata.h"
@@ -245,7 +245,7 @@ class Recovery {
     report_.passes_saved = appender_->passes();
   }
 
-  // Of use only where the producer would find what it had written.
+  // The resume state to keep; empty where records are lost, since it would then be wrong.
   std::vector<std::byte> resume_state() {
     if (!report_.losses.empty() || walk_.commits.empty()) return {};
     const WalkedCommit& last = walk_.commits.back();

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/error.h"
 #include "formats/bytes.h"
 #include "formats/commit.h"
-#include "formats/error.h"
 #include "formats/frame.h"
 #include "formats/head_frame.h"
 #include "formats/layout.h"

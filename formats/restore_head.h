@@ -1,4 +1,4 @@
-// HEAD of a file whose first frame is unreadable, from the copies in its commits.
+// Restores HEAD of a file whose first frame is unreadable from the copies in its commits.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace psf::formats {
 
-// The copy of the first commit that has a whole one, of whatever uuid. Nothing where there is none.
-// Throws only Error{io}.
+// The copy of the first commit that has a whole one, whatever its uuid; not set where no commit has
+// one. Throws only Error{io}.
 [[nodiscard]] std::optional<HeadFrame> restore_head(const File& file, std::uint64_t file_size);
 
 }  // namespace psf::formats

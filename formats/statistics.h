@@ -1,4 +1,4 @@
-// What the columns of a path-vertex buffer hold and what they cost, by channel.
+// Statistics of the values and the sizes of the columns of a path-vertex buffer, by channel.
 #pragma once
 
 #include <cstddef>
@@ -13,23 +13,24 @@ namespace psf::formats {
 
 struct ChannelSize {
   std::uint64_t raw = 0, stored = 0;                // bytes
-  std::uint64_t raw_columns = 0, zstd_columns = 0;  // by codec
+  std::uint64_t raw_columns = 0, zstd_columns = 0;  // numbers of columns by codec
 };
 
-// One a channel. Reads directories only. Throws Error{bad_input} that names the chunk.
+// The sizes of each channel. Reads directories only. Throws Error{bad_input} that names the chunk.
 [[nodiscard]] std::vector<ChannelSize> channel_sizes(const Reader& reader);
 
 struct ComponentStatistics {
   std::uint64_t finite = 0, non_finite = 0;
-  double min = std::numeric_limits<double>::infinity();  // of the finite values, like the rest
+  double min = std::numeric_limits<double>::infinity();  // min, max and sum are of finite values
   double max = -std::numeric_limits<double>::infinity();
   double sum = 0;
 
   [[nodiscard]] double mean() const { return finite > 0 ? sum / static_cast<double>(finite) : 0; }
 };
 
-// Of each component of the decoded values of a channel. Parallel over chunks; the same for any
-// number of threads. `progress(chunks done)` is called from the calling thread.
+// The statistics of each component of the decoded values of a channel. The chunks are read in
+// parallel; the result is the same for any number of threads. Calls `progress` with the number of
+// chunks done, from the calling thread.
 [[nodiscard]] std::vector<ComponentStatistics> channel_statistics(
     const Reader& reader, std::size_t channel,
     const std::function<void(std::size_t)>& progress = {});

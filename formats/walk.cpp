@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/error.h"
 #include "formats/chunk.h"
-#include "formats/error.h"
 #include "formats/layout.h"
 
 namespace psf::formats {

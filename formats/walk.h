@@ -16,7 +16,7 @@ namespace psf::formats {
 
 struct WalkedChunk {
   ChunkEntry entry;
-  bool readable = false;  // its frame is; its columns are still to be checked
+  bool readable = false;  // the frame is readable; its columns are still to be checked
 };
 
 struct WalkedCommit {
@@ -24,7 +24,7 @@ struct WalkedCommit {
   Commit commit;
 };
 
-// Pages where no valid frame stands.
+// A range of pages without a valid frame.
 struct Region {
   std::uint64_t begin = 0, end = 0;
   std::string fault;
@@ -33,8 +33,8 @@ struct Region {
 struct Walk {
   HeadFrame head;
   std::uint64_t file_size = 0;
-  std::uint64_t end = 0;       // of the last commit; 0: there is none
-  std::vector<Prefix> frames;  // of all valid frames but HEAD
+  std::uint64_t end = 0;       // end of the last commit; 0: there is no commit
+  std::vector<Prefix> frames;  // prefixes of all valid frames except HEAD
   std::vector<WalkedCommit> commits;
   std::map<std::uint64_t, WalkedChunk> chunks;  // by offset
   std::vector<Region> bad;
@@ -43,11 +43,11 @@ struct Walk {
   [[nodiscard]] const Uuid& uuid() const { return head.frame.prefix.uuid; }
 };
 
-// Of a file whose HEAD is `head`. Throws Error{bad_input} where a frame must be understood and is
-// not.
+// Walks over the frames of a file whose HEAD is `head`. Throws Error{bad_input} for a required
+// frame of an unknown type.
 [[nodiscard]] Walk walk_frames(const File& file, HeadFrame head);
 
-// Forgets what lies from `end` on.
+// Removes from `walk` everything from the offset `end` on.
 void drop_behind(Walk& walk, std::uint64_t end);
 
 }  // namespace psf::formats

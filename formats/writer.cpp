@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/error.h"
 #include "formats/appender.h"
 #include "formats/codec.h"
-#include "formats/error.h"
 
 namespace psf::formats {
 namespace {

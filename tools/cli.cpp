@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "core/apart.h"
+#include "core/error.h"
 #include "core/interrupt.h"
 #include "core/output_file.h"
 #include "core/standard_streams.h"
-#include "formats/error.h"
 
 namespace psf::tools {
 namespace {

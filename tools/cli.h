@@ -1,5 +1,4 @@
-// What all tools share: common options, and one place where errors become one line and an exit
-// code.
+// Common options of all tools, and the place where errors become a line of text and an exit code.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -12,25 +11,26 @@ namespace psf::tools {
 struct CommonOptions {
   std::size_t threads = 0;  // 0: all cores
   bool quiet = false;
-  std::string json;  // figures for programs go here; empty: nowhere
+  std::string json;  // file for the figures as JSON; empty: none
 };
 
-// What every verb does before it works: throws Error{usage} where an output is an input or another
-// output (core/apart.h), Error{io} where one cannot be written. Empty names are none.
+// Checks the files of a verb before it works. Throws Error{usage} where an output is an input or
+// another output (core/apart.h), Error{io} where one cannot be written. Empty names are ignored.
 void check_files(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
-// --threads, --quiet, --json. A verb without figures leaves json out.
+// Adds --threads, --quiet and, unless `with_json` is false, --json.
 void add_common(CLI::App& command, CommonOptions& options, bool with_json = true);
 
-// Parses, runs the callbacks, returns the exit code of ErrorCode. `command` callbacks do the work
-// and throw. Where what was printed does not get out that is an error, too.
+// Parses the command line, runs the callbacks, which do the work and may throw, and returns the
+// exit code of ErrorCode. It is also an error if printed text could not be written.
 int run_tool(CLI::App& app, int argc, char** argv);
 
-// What a block of a filter gives back the next one takes: without going through the system, which
-// would clear it anew (a tenth of the time for blocks of 65,536 records). For the whole process.
+// Makes the allocator keep freed memory, so that the next block of a filter run gets the memory of
+// the one before. Memory from the system would have to be cleared, which takes a tenth of the time
+// for blocks of 65,536 records. It holds for the whole process.
 void keep_freed_memory();
 
-// The example that closes every --help, set in its own paragraph.
+// Sets the example at the end of a command's --help, in a paragraph of its own.
 void set_example(CLI::App& command, const std::string& example);
 
 }  // namespace psf::tools

@@ -1,5 +1,5 @@
-// Options whose text is a value of ours: numbers within limits, choices; and help that fits the
-// page.
+// Options whose text becomes a value (numbers within limits, choices), and the wrapping of help
+// texts.
 #pragma once
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@
 
 namespace psf::tools {
 
-// The whole of `text` as a finite number, or nothing.
+// `text` as a finite number, or nothing where it is anything else.
 template <class T>
 std::optional<T> parse_number(std::string_view text) {
   T value{};
@@ -30,7 +30,8 @@ std::optional<T> parse_number(std::string_view text) {
   return value;
 }
 
-// An option whose text `parse` turns into a value, or into nothing where it is none.
+// Adds an option. parse(text) stores the value and returns true, or returns false where `text` is
+// not what was `expected`.
 template <class Parse>
 CLI::Option* add_parsed(CLI::App& app, const std::string& name, const std::string& type,
                         const std::string& expected, const std::string& help, Parse parse) {
@@ -41,7 +42,7 @@ CLI::Option* add_parsed(CLI::App& app, const std::string& name, const std::strin
   return app.add_option_function<std::string>(name, callback, help)->type_name(type);
 }
 
-// A number between two limits, both allowed.
+// Adds an option whose value is a number from `least` to `most`.
 template <class T>
 CLI::Option* add_number(CLI::App& app, const std::string& name, T& target, T least, T most,
                         const std::string& help) {
@@ -84,7 +85,7 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, Enum& target,
       ->default_str(chosen);
 }
 
-// Breaks a help text into lines that fit a page beside the options' names.
+// Breaks a help text into lines that fit beside the options' names.
 inline std::string wrap(const std::string& text) {
   constexpr std::size_t kWidth = 68;
   std::string result;

@@ -1,4 +1,5 @@
-// The files that a run writes its pictures to: one a name, camera and snapshot.
+// The names of the files that a run writes its pictures to, one for each output, camera and
+// snapshot.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,8 +14,8 @@
 
 namespace psf::tools {
 
-// Where pictures go: the names given, with the camera's where there are several, and the passes of
-// a snapshot.
+// Makes file names from the given names, the camera's name where there are several cameras, and the
+// number of passes of a snapshot.
 class PictureNames {
  public:
   PictureNames(const std::vector<std::string>& names, const std::vector<std::string>& cameras)
@@ -31,7 +32,7 @@ class PictureNames {
     }
   }
 
-  // `passes` 0: the final pictures.
+  // The file for an output, a camera and the snapshot after `passes` passes; 0: the final picture.
   [[nodiscard]] std::string path(std::size_t output, std::size_t camera,
                                  std::uint64_t passes) const {
     const std::filesystem::path name(names_[output]);
@@ -40,7 +41,7 @@ class PictureNames {
             (name.stem().string() + cameras_[camera] + suffix + name.extension().string()))
         .string();
   }
-  // Of a run with these snapshots.
+  // The names of all files of a run with these snapshots.
   [[nodiscard]] std::vector<std::string> all(const std::vector<std::uint64_t>& snapshots) const {
     std::vector<std::string> files;
     for (std::size_t output = 0; output < names_.size(); ++output) {

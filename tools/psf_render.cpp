@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/error.h"
 #include "core/interrupt.h"
 #include "core/json_text.h"
 #include "core/output_file.h"
@@ -17,7 +18,6 @@
 #include "core/progress.h"
 #include "core/standard_streams.h"
 #include "film/image.h"
-#include "formats/error.h"
 #include "picture_names.h"
 #include "render/render.h"
 #include "render_options.h"
@@ -53,7 +53,7 @@ film::Image make_image(const render::Scene& scene, const render::Camera& camera,
   film::Image image;
   image.width = film.width();
   image.height = film.height();
-  // Of a pixel none of whose paths is shaded, what the shaded ones around it say.
+  // A pixel without shaded paths gets the mean of the shaded paths around it.
   image.add("", "RGB", settings.shade_rate > 1 ? film.filled_mean() : film.mean());
   const auto& i = settings.integrator;
   image.attributes = {{"producer", settings.producer},

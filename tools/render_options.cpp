@@ -10,9 +10,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/error.h"
 #include "core/output_file.h"
 #include "film/image.h"
-#include "formats/error.h"
 #include "option_values.h"
 #include "render/recorder.h"
 #include "version.h"

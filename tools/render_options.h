@@ -13,7 +13,7 @@ namespace psf::tools {
 
 struct RenderOptions {
   std::string scene;
-  std::string output;                // .pvb; empty: none
+  std::string output;                // the .pvb file; empty: none
   std::vector<std::string> images;   // .exr or .png of the unfiltered picture
   std::vector<std::string> cameras;  // names; empty: the first; "all"
   bool resume = false;
@@ -23,12 +23,12 @@ struct RenderOptions {
   CommonOptions common;
 };
 
-// Declares the options, which write into `options`. Text that is no value of an option is a usage
-// error that says what was expected.
+// Declares the options, which write into `options`. Text that is not a valid value of an option is
+// a usage error that says what was expected.
 void add_render_options(CLI::App& app, RenderOptions& options);
 
-// What the whole of the command line must fulfil before anything is loaded: some output, folders
-// that exist, names that can be written. Throws Error{usage} or Error{io}.
+// Checks the command line before anything is loaded: there must be an output, its folder must exist
+// and its name must be writable. Throws Error{usage} or Error{io}.
 void check_outputs(const RenderOptions& options);
 
 }  // namespace psf::tools

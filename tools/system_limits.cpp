@@ -20,8 +20,8 @@
 #include <new>
 #include <system_error>
 
-#include "formats/error.h"
-#include "formats/unfinished.h"
+#include "core/error.h"
+#include "core/unfinished.h"
 
 namespace psf::tools {
 namespace {
@@ -33,7 +33,7 @@ const char* program = "psf";
 
 // Takes no memory.
 [[noreturn]] void give_up(const char* why) noexcept {
-  remove_unfinished();
+  core::remove_unfinished();
   const auto part = [](const char* text) {
     return iovec{const_cast<char*>(text), std::strlen(text)};
   };

@@ -14,11 +14,11 @@
 namespace psf::core {
 namespace {
 
-// Of a file that is there its number on its device; of another that of its folder, and its name;
-// where that is not there either, the whole name.
+// What identifies a file: for an existing file its device and its inode; else those of its folder,
+// and its name; where the folder does not exist either, the whole path.
 using Identity = std::tuple<dev_t, ino_t, std::string>;
 
-// Nothing for devices, pipes and what cannot be reached.
+// The identity of a file; nothing for devices and pipes.
 std::optional<Identity> identity_of(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) == 0) {

@@ -8,7 +8,8 @@ namespace psf::core {
 
 // Throws Error{usage} where writing an output would overwrite an input or another output, whatever
 // names lead to it: links of both kinds, "." and "..", standard output that is redirected to it.
-// Empty names are none; devices and pipes may be both. Neither need be there; nothing is opened.
+// Empty names are ignored; a device or a pipe may be input and output at once. The files need not
+// exist, and none is opened.
 void check_apart(std::span<const std::string> inputs, std::span<const std::string> outputs);
 
 }  // namespace psf::core

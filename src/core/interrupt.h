@@ -1,15 +1,17 @@
-// ^C: noticed, not obeyed at once, so that long work can end at a whole step.
+// ^C sets a flag instead of ending the program, so that long work can end after a whole step.
 #pragma once
 
 namespace psf::core {
 
-// From now on SIGINT, SIGTERM, SIGHUP and SIGXCPU set a flag. A second one ends the program at once
-// with exit code 130 (SIGXCPU comes every second and does not), and what is unfinished is removed;
-// so it is, too, where another signal ends it. A write beyond the limit of file sizes and one into
-// a closed pipe fail and end nothing (SIGXFSZ, SIGPIPE).
+// After this call SIGINT, SIGTERM, SIGHUP and SIGXCPU set a flag. A second signal removes the
+// unfinished files and ends the program at once with exit code 130, except SIGXCPU, which comes
+// every second. Unfinished files are also removed where another signal ends the program. A write
+// beyond the file size limit or into a closed pipe fails without ending the program (SIGXFSZ and
+// SIGPIPE are ignored).
 void watch_interrupts();
 [[nodiscard]] bool interrupted() noexcept;
-// Throws Error{interrupted} where the flag is set; `what` says what is left behind.
+// Throws Error{interrupted} where the flag is set; `what`, the end of its message, says what is
+// left behind.
 void throw_if_interrupted(const char* what);
 
 }  // namespace psf::core

@@ -7,8 +7,8 @@
 
 namespace psf::core {
 
-// Of any JSON value of nlohmann's; what is no UTF-8 in a string becomes U+FFFD. `indent` -1: one
-// line.
+// The text of a JSON value of nlohmann's library. Bytes of strings that are not UTF-8 become
+// U+FFFD. With `indent` -1 the text is one line.
 template <class Json>
 [[nodiscard]] std::string json_text(const Json& json, int indent = -1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);

@@ -1,4 +1,4 @@
-// The lower case of ASCII letters, for names that count in any case.
+// Lower case of ASCII letters, for names that are compared without regard to case.
 #pragma once
 
 #include <string>

@@ -8,19 +8,20 @@
 
 namespace psf::core {
 
-// Write to temporary_path(), then commit(), which renames it over `path`; a symbolic link stays and
-// the file that it leads to is replaced. Without commit the destructor removes the temporary, and
-// so does a signal that ends the program: what was there before is left.
+// Write to temporary_path(), then call commit(), which renames it over `path`. Where `path` is a
+// symbolic link, the link stays and its target is replaced. Without commit() the destructor removes
+// the temporary file, as does a signal that ends the program, and an earlier file stays as it was.
 class OutputFile {
  public:
-  // Throws Error{io} at once where the folder is missing or not writable, where `path` is a folder
-  // or write-protected, before any work is done for it.
+  // Throws Error{io} where the folder is missing or not writable, or where `path` is a folder or
+  // write-protected, so that no work is done in vain.
   explicit OutputFile(const std::string& path);
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  // Beside the file and with its extension, so that libraries which look at the extension write the
-  // right format. Its name is no longer than the file system takes. A device or a pipe: itself.
+  // The name of the temporary file. It is in the same folder as the file and has its extension, so
+  // that libraries that look at the extension write the right format, and is no longer than the
+  // file system allows. For a device or a pipe it is `path` itself.
   [[nodiscard]] const std::string& temporary_path() const { return temporary_; }
   void commit();
 
@@ -29,11 +30,11 @@ class OutputFile {
   std::optional<Unfinished> unfinished_;
 };
 
-// Where `path` leads: through symbolic links of its last part, also to a file that is not there
-// yet.
+// The path that `path` leads to when symbolic links in its last part are followed. The file need
+// not exist.
 [[nodiscard]] std::string followed(const std::string& path);
 
-// Writes `text` as a whole file.
+// Writes a file that holds `text`, by OutputFile. Throws Error{io}.
 void write_text_file(const std::string& path, const std::string& text);
 
 }  // namespace psf::core

@@ -8,8 +8,8 @@
 namespace psf::core {
 
 // Calls body(begin, end) for [0, grain), [grain, 2 grain), ... up to count, in any order, on all
-// threads. The ranges are fixed, so what is reduced per range and then summed in order is the same
-// for any number of threads. An exception of a body ends the loop and is thrown here.
+// threads. The ranges are fixed, so values that are reduced per range and then summed in order are
+// the same for any number of threads. An exception of a body ends the loop and is thrown here.
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
@@ -17,19 +17,19 @@ void parallel_for(std::size_t count, std::size_t grain,
   return (count + grain - 1) / grain;
 }
 
-// Work that goes on beside the caller's, one piece at a time, on a thread that has nothing else to
-// do.
+// Runs work beside the caller, one piece at a time, on a thread that is idle.
 class Aside {
  public:
   Aside();
-  ~Aside();  // waits; what the work throws is lost
+  ~Aside();  // waits for the work; an exception of the work is lost
   Aside(const Aside&) = delete;
   Aside& operator=(const Aside&) = delete;
 
-  // Where there is but one thread it is wait() that does the work. Not before the last piece was
-  // waited for.
+  // Starts `work`. Where there is only one thread, wait() runs it. Call wait() before the next
+  // start().
   void start(std::function<void()> work);
-  // Until it is done, helping; throws what it threw. Nothing where none was started.
+  // Waits until the work is done, helping with it, and throws what it threw. Returns at once where
+  // no work was started.
   void wait();
 
  private:
@@ -37,11 +37,11 @@ class Aside {
   std::unique_ptr<State> state_;
 };
 
-// Calls `body`, whose parallel loops leave work of an Aside to other threads: so it takes no longer
-// than its own work.
+// Calls `body`. While this thread waits in a parallel loop of `body`, it does not take up the work
+// of an Aside, which could delay `body`.
 void undisturbed(const std::function<void()>& body);
 
-// Bounds the threads of every parallel loop while it lives. threads = 0: all cores.
+// Limits the threads of every parallel loop as long as the object exists. `threads` = 0: all cores.
 class ThreadLimit {
  public:
   explicit ThreadLimit(std::size_t threads);

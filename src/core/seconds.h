@@ -1,4 +1,4 @@
-// How long something took, by a clock that nobody sets.
+// How long something took, by a steady clock.
 #pragma once
 
 #include <chrono>

@@ -1,20 +1,21 @@
-// Standard output is checked, standard error is not: results must arrive, remarks need not.
+// Standard output and standard error. Write errors of standard output are reported, because results
+// must arrive; those of standard error are ignored.
 #pragma once
 
 #include <string_view>
 
 namespace psf::core {
 
-// Once, before any file is opened: one of the three that is closed would give its number to a file
-// of ours, which would then get the program's text. What is written to it fails instead.
+// Call this once, before any file is opened. Opens /dev/null for each of the three standard streams
+// that is closed, so that no file of the program gets its number and then the program's text.
+// Reading from or writing to such a stream fails.
 void open_standard_streams();
 
-// Throws Error{io} "standard output: No space left on device" where what was printed did not get
-// out.
+// Throws Error{io}, for example "standard output: No space left on device", where printed text
+// could not be written.
 void flush_standard_output();
 
-// A line on stderr; what does not print in `text` is escaped, so that it is one. Nothing where it
-// cannot be written: no work ends for it.
+// Writes `text` to stderr as one line; control characters are escaped. Errors are ignored.
 void say(std::string_view text) noexcept;
 
 }  // namespace psf::core

@@ -6,8 +6,9 @@
 
 namespace psf::film {
 
-// Linear up to kShoulder, above it an exponential that reaches 1 at infinity, with the same slope
-// where they meet: mid-tones stay true, lamps do not burn out. NaN and negative values are black.
+// Linear up to kShoulder; above it an exponential that reaches 1 at infinity, with the same slope
+// where the two meet. Mid-tones stay true and lamps do not burn out. NaN and negative values give
+// 0.
 [[nodiscard]] inline float tone_map(float linear) {
   constexpr float kShoulder = 0.7f;
   if (!(linear > 0)) return 0;
@@ -15,7 +16,7 @@ namespace psf::film {
   return 1 - (1 - kShoulder) * std::exp(-(linear - kShoulder) / (1 - kShoulder));
 }
 
-// IEC 61966-2-1.
+// The sRGB transfer function of IEC 61966-2-1; `linear` is clamped to [0, 1].
 [[nodiscard]] inline float srgb_from_linear(float linear) {
   const float x = std::clamp(linear, 0.0f, 1.0f);
   return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;

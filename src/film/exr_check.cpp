@@ -168,7 +168,7 @@ void check_chunks(const std::string& path, const Imf::Header& header, std::uint6
                             data.width, data.height, size));
 }
 
-// Of the part that is read.
+// Checks the kind and the size of the pixels of the part that is to be read.
 void check_pixels(const std::string& path, const Imf::Header& header, std::uint64_t size) {
   if (is_deep(header)) {
     throw Error(ErrorCode::bad_input,

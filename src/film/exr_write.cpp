@@ -23,7 +23,7 @@
 namespace psf::film {
 namespace {
 
-constexpr std::size_t kLines = 16;  // of a chunk, by the format for ZIP
+constexpr std::size_t kLines = 16;  // lines of a chunk, which the format fixes for ZIP
 
 // A file that OpenEXR writes through, so that what the system says of a failure is not lost. Small
 // pieces are gathered: a header alone is hundreds, which took longer than the pixels of a small
@@ -91,7 +91,7 @@ class File {
   int descriptor_;
   int error_ = 0;
   std::vector<char> pending_;
-  std::uint64_t offset_ = 0;  // of what is pending, or of what comes next
+  std::uint64_t offset_ = 0;  // place in the file of the pending bytes, or of the next bytes
 };
 
 class Writer {

@@ -1,4 +1,4 @@
-// The ZIP compression of an EXR's chunk.
+// ZIP compression of the chunks of an EXR file.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,14 @@
 
 namespace psf::film {
 
-// Room for the bytes of one chunk after another, and for what they become.
+// Compresses one chunk after another, and keeps its buffers from one to the next.
 class ExrZip {
  public:
-  // Bytes that the caller fills; they are lost with the next call.
+  // A buffer for the bytes of a chunk, which the caller fills; valid until the next call.
   [[nodiscard]] std::span<std::uint8_t> room(std::size_t bytes);
-  // The bytes of room() as the file holds them: deflated as OpenEXR's technical introduction has
-  // it, or as they are where that does not make them fewer; until the next call of room(). The same
-  // bytes for one kind of processor.
+  // The bytes of room() as the file stores them: rearranged and deflated as in OpenEXR's technical
+  // introduction, or unchanged where that does not make them fewer. Valid until the next call of
+  // room(). The result is the same for one kind of processor.
   [[nodiscard]] std::span<const std::uint8_t> zip();
 
  private:

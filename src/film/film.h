@@ -9,8 +9,8 @@
 
 namespace psf::film {
 
-// Sums in double, so that the mean of millions of paths is exact to float. Add a pixel's paths from
-// one thread, in path order: then the picture is the same bytes for any number of threads.
+// Sums are in double, so that the mean of millions of paths is exact to float. Add a pixel's paths
+// from one thread and in path order; then the picture has the same bytes for any number of threads.
 class Film {
  public:
   Film(std::size_t width, std::size_t height)
@@ -25,12 +25,12 @@ class Film {
   }
   [[nodiscard]] std::size_t width() const { return width_; }
   [[nodiscard]] std::size_t height() const { return height_; }
-  // (height, width, 3) means; 0 where a pixel has no path.
+  // The means, (height, width, 3); 0 where a pixel has no path.
   [[nodiscard]] std::vector<float> mean() const;
-  // (height, width) of them: 0, 1 or 2.
+  // The means of one colour component, 0, 1 or 2, (height, width).
   [[nodiscard]] std::vector<float> mean(std::size_t component) const;
-  // The same, but that a pixel without path has the mean of the paths of the smallest square of
-  // 2 x 2, 4 x 4, 8 x 8, ... pixels, aligned to its size, that it lies in and that has any.
+  // The means, (height, width, 3). A pixel without path gets the mean of all paths in the smallest
+  // square around it of 2 x 2, 4 x 4, 8 x 8, ... pixels, aligned to its size, that has any path.
   [[nodiscard]] std::vector<float> filled_mean() const;
   [[nodiscard]] bool has_path(std::size_t pixel) const { return count_[pixel] > 0; }
   [[nodiscard]] bool has_path_everywhere() const;

@@ -21,7 +21,7 @@ constexpr std::size_t kGrain = 4096;
 using core::Clock;
 using core::seconds_since;
 
-// Of every query, see finished().
+// Applies finished() to the average of every query.
 void finish(const Records& records, const Roles& roles, std::span<const float> radius,
             const Parameters& parameters, Average& result) {
   const std::span<const std::uint32_t> queries = roles.queries;

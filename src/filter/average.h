@@ -12,21 +12,21 @@
 
 namespace psf::filter {
 
-// By record number.
+// The result of average(); every array is indexed by record number.
 struct Average {
   std::vector<Role>
-      roles;  // c_bar is there for `query` and `source`; `left_out` is no part of the picture
-  std::vector<Rgb> c_bar;                // 0 elsewhere
-  std::vector<std::uint32_t> neighbors;  // sources averaged; 0 for an orphan
+      roles;  // records that are `query` or `source` have c_bar; `left_out` is in no picture
+  std::vector<Rgb> c_bar;                // 0 for the other records
+  std::vector<std::uint32_t> neighbors;  // number of sources averaged; 0 for an orphan
   Statistics statistics;
-  std::vector<float> radius = {};  // that [adaptive] chose; empty: those that were given
+  std::vector<float> radius = {};  // the radii that [adaptive] chose; empty for other estimators
 };
 
-// `radius`: r_i in world units, finite or infinite, >= 0 (radii() of radius.h). The channels that
-// parameters use must be there (else Error{bad_input}), parameters valid, cameras of the records in
-// block.cameras. A record whose ball holds itself alone keeps c_i bit for bit. Deterministic for
-// any number of threads. Throws Error{interrupted} on ^C, Error{usage} for the estimator `disk`
-// with several cameras.
+// Averages one block. `radius`: r_i in world units, finite or infinite, >= 0 (radii() of radius.h).
+// `parameters` must be valid, and block.cameras must hold the cameras of the records. A record
+// whose ball holds itself alone keeps c_i bit for bit. The result is the same for any number of
+// threads. Throws Error{bad_input} where a channel that `parameters` use is missing, Error{usage}
+// for the estimator `disk` with several cameras, Error{interrupted} on ^C.
 [[nodiscard]] Average average(const Records& records, std::span<const float> radius,
                               const Block& block, const Parameters& parameters);
 

@@ -15,14 +15,15 @@ struct PathRange {
   bool operator==(const PathRange&) const = default;
 };
 
-// Blocks of a range of passes. Blocks of b^m paths lie where s_i = floor(i / b^m) b^m of the whole
-// dump puts them, so that they stay the nets of the sequence, and are cut where the range begins
-// and ends; blocks of K passes are counted from the range's first pass. The last block may be
-// short.
+// The blocks of a range of passes. Blocks of b^m paths begin at multiples of b^m, counted from the
+// first path of the dump, so that they are nets of the sampling sequence; they are cut where the
+// range begins and ends. Blocks of K passes are counted from the range's first pass. The last block
+// may be short.
 class Blocks {
  public:
-  // pass_bounds[p]: first path of pass p, and one more entry, the end. Passes [first_pass,
-  // last_pass). Throws Error{limit} where a block has more than 2^31 - 1 paths.
+  // pass_bounds[p] is the first path of pass p; one more entry is the end of the last pass. The
+  // range is the passes [first_pass, last_pass). Throws Error{limit} where a block has more than
+  // 2^31 - 1 paths.
   Blocks(const BlockSize& size, std::vector<std::uint64_t> pass_bounds, std::size_t first_pass,
          std::size_t last_pass);
 
@@ -37,7 +38,7 @@ class Blocks {
   std::vector<std::uint64_t> bounds_;
   std::size_t first_pass_, last_pass_;
   PathRange all_;
-  std::uint64_t length_ = 0;  // power: b^m, or more than all paths
+  std::uint64_t length_ = 0;  // for blocks of b^m paths: b^m, or a number above that of all paths
   std::uint64_t count_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// What an estimator starts from: channels that are there, values to average, areas.
+// The inputs of an estimator: required channels, values to average, areas.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +12,22 @@
 
 namespace psf::filter {
 
-// Throws Error{bad_input} naming the channel that `parameters` use and `records` do not have.
+// Throws Error{bad_input} naming a channel that `parameters` use and `records` do not have.
 void require_channels(const Records& records, const Parameters& parameters);
 
-// The terms without `gloss` where no vertex has a glossy lobe: then it passes every pair.
+// `terms`, without `gloss` where no vertex has a glossy lobe, since then `gloss` passes every pair.
 [[nodiscard]] WeightTerms terms_in_use(const Records& records, const WeightTerms& terms);
 
-// By record number: c / rho of the sources, 0 elsewhere.
+// By record number: c / rho of the sources, 0 for other records.
 [[nodiscard]] std::vector<Rgb> demodulated(const Records& records, const Roles& roles);
 
-// By record number: A_j of [disk] of the sources, 0 elsewhere. Throws Error{usage} where the block
-// has several cameras.
+// By record number: A_j of [disk] of the sources, 0 for other records. Throws Error{usage} where
+// the block has several cameras.
 [[nodiscard]] std::vector<float> areas(const Records& records, const Roles& roles,
                                        const Block& block);
 
-// Back from what was averaged over so many sources to radiance. Who averaged over itself alone
-// keeps its own value, which dividing and multiplying would round.
+// c_bar_i from the average over `neighbors` sources: multiplied by rho_i under demodulation. A
+// source that was averaged over itself alone keeps c_i, which dividing and multiplying would round.
 [[nodiscard]] inline Rgb finished(const Rgb& averaged, std::uint32_t neighbors, bool is_source,
                                   float r_i, const Records& records, std::uint32_t i,
                                   const Parameters& parameters) {

@@ -18,7 +18,7 @@ namespace {
 using core::Clock;
 using core::seconds_since;
 
-// Radii that share a traversal at most: their sums for 16 queries fit a second-level cache.
+// The most radii that share a traversal: their sums for 16 queries fit a second-level cache.
 constexpr std::size_t kMostRings = 256;
 
 // Distinct scales, ascending, and where each radius is among them.
@@ -36,7 +36,7 @@ struct Scales {
                                             values.begin()));
     }
   }
-  // Of the largest, the least that is not 0.
+  // The least scale that is not 0, as a share of the largest scale.
   [[nodiscard]] double least_share() const {
     const auto least = std::upper_bound(values.begin(), values.end(), 0.0);
     return least == values.end() ? 1 : *least / values.back();
@@ -65,7 +65,7 @@ class Many {
   }
 
  private:
-  // False where the fast engine does not take the values.
+  // Returns false where the fast engine does not accept the values.
   bool in_one_traversal(const Scales& scales) {
     const auto start = Clock::now();
     require_channels(r_, parameters_);

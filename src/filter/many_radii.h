@@ -1,4 +1,4 @@
-// [average] of one block for many radii at once: what a sweep over r0 and delta asks.
+// [average] of one block for many radii at once, for sweeps over r0 and delta.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace psf::filter {
 
-// Who is given the averages. Queries come in slabs, one after the other, those of a slab in parts
-// from several threads at once: always the same slabs and parts in the same order.
+// Receives the averages. Queries come in slabs, one after the other; the parts of a slab come from
+// several threads at once. Slabs and parts are always the same.
 class Receiver {
  public:
   Receiver() = default;
@@ -18,32 +18,34 @@ class Receiver {
   Receiver& operator=(const Receiver&) = delete;
   virtual ~Receiver() = default;
 
-  // What each record is; before the slabs of a traversal, and valid during them.
+  // Called before the slabs of a traversal with the role of each record; valid during the
+  // traversal.
   virtual void set_roles(std::span<const Role> roles) { static_cast<void>(roles); }
-  // Record numbers; those of part p are [p * grain, (p + 1) * grain).
+  // Begins a slab. `queries`: record numbers, valid until end(); part p of the slab is [p * grain,
+  // (p + 1) * grain) of them.
   virtual void begin(std::span<const std::uint32_t> queries, std::size_t grain) = 0;
-  // (queries of the part, count) c_bar, of the radii [first, first + count); each part once.
+  // Takes c_bar, (queries of the part, count), of a part for the radii [first, first + count).
   virtual void take(std::size_t part, std::size_t first, std::size_t count,
                     std::span<const Rgb> c_bar) = 0;
   virtual void end() = 0;
 
-  static constexpr std::size_t kMostQueries = std::size_t{1} << 14;  // of a slab
+  static constexpr std::size_t kMostQueries = std::size_t{1} << 14;  // in a slab
 };
 
 struct ManyAverages {
-  std::vector<Role> roles;             // of each record, as Average has them
-  std::vector<Statistics> statistics;  // of each radius; the seconds are of all together
+  std::vector<Role> roles;             // role of each record, as in Average
+  std::vector<Statistics> statistics;  // one per radius; the seconds are for all radii together
 };
 
-// The same as average() for each of `radii`, which replace parameters.radius and share its basis
-// and count, but that sums are added in another order. Every query of the block is given to
-// `receiver` for every radius. One traversal for [average] and [disk]; iterations and the other
-// estimators take one a radius. Throws what average() and the receiver throw.
+// Averages like average() for each of `radii`, which replace parameters.radius and have its basis
+// and count; only the order of sums differs. Every query of the block is given to `receiver` for
+// every radius. [average] and [disk] take one traversal; iterations and the other estimators take
+// one per radius. Throws what average() and the receiver throw.
 [[nodiscard]] ManyAverages average_many(const Records& records, const Block& block,
                                         const Parameters& parameters, std::span<const Radius> radii,
                                         Receiver& receiver);
 
-// Bytes of each record beside those of memory_per_record().
+// Bytes per record in addition to those of memory_per_record().
 inline constexpr std::uint64_t kManyBytesPerRecord = sizeof(double);
 
 }  // namespace psf::filter

@@ -1,4 +1,4 @@
-// How much memory average() needs for a block, so that a run can be refused before it starts.
+// The memory that average() needs for a block, so that a run can be refused before it starts.
 #pragma once
 
 #include <cstdint>
@@ -7,13 +7,12 @@
 
 namespace psf::filter {
 
-// Bytes a record at most, beside the records themselves; the radius is counted here. What the sort
-// needs (44) is given back before the tree is built, which needs more.
-// Not counted: 20 bytes of scaled.h, for a block whose lengths need another unit, as no usual ones
-// do.
+// The most bytes per record that average() needs, radii included, in addition to the records
+// themselves. The sort's 44 bytes are freed before the tree, which needs more, is built. Not
+// counted are 20 bytes of scaled.h, which only a block with unusually large or small lengths needs.
 [[nodiscard]] inline std::uint64_t memory_per_record(const Parameters& parameters) {
-  constexpr std::uint64_t kVector = 12, kWord = 4, kSum = 24;  // three floats; three doubles
-  constexpr std::uint64_t kGroup = 16, kQuad = 4;              // records, of engine/tree.h
+  constexpr std::uint64_t kVector = 12, kWord = 4, kSum = 24;  // 3 floats, 1 float, 3 doubles
+  constexpr std::uint64_t kGroup = 16, kQuad = 4;              // records of nodes in engine/tree.h
   constexpr std::uint64_t kResult = kVector + kWord + 1;       // c_bar, neighbours, role
   constexpr std::uint64_t kLists = 4 * kWord;  // queries and sources, ascending and in order
   constexpr std::uint64_t kRadius = kWord;
@@ -30,18 +29,19 @@ namespace psf::filter {
   if (terms.material) columns += kWord;
   if (terms.gloss) columns += kWord;
   const std::uint64_t groups = (2 * columns + kSum + kGroup - 1) / kGroup;
-  constexpr std::uint64_t kParents = 2;  // for 256: a node, a point of the index, statistics
+  constexpr std::uint64_t kParents = 2;  // per 256 records: node, point of the index, statistics
 
   std::uint64_t bytes = kResult + kLists + kRadius + columns + kSum + kQuads + groups + kParents;
-  if (parameters.demodulate || parameters.iterations > 1) bytes += kVector;  // what is averaged
+  if (parameters.demodulate || parameters.iterations > 1) bytes += kVector;  // values to average
   if (disk) bytes += kWord;                                                  // areas
-  // A key, its hash, two entries to sort, places in cells, twice where there are orphans; no tree.
+  // [hash] has a key, its hash, two entries to sort, and places in cells, twice for orphans; it has
+  // no tree.
   if (parameters.estimator == Estimator::hash)
     bytes = kResult + kLists + kRadius + 96 + 64 + kVector;
-  // Values, means and moments, the roles of a half; its tree is smaller.
+  // [control] has values, means, moments and the roles of a half; its tree is smaller.
   if (parameters.estimator == Estimator::control) bytes += 3 * kVector + 3 * kWord + 1;
-  // Radii, those in double, luminances; the rings' tree is gone before that of the averages is
-  // made.
+  // [adaptive] has radii in float and in double, and luminances. Its tree for rings is freed before
+  // the tree for averages is built.
   if (parameters.estimator == Estimator::adaptive) bytes += kWord + 2 * kWord + kVector;
   return bytes;
 }

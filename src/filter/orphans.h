@@ -1,4 +1,5 @@
-// Queries without a source in their ball: where their average comes from instead.
+// Orphans, the queries without a source in their ball that passes the weights, and the sources that
+// they average instead.
 #pragma once
 
 #include <cstdint>
@@ -13,17 +14,18 @@ namespace psf::filter {
 // An orphan averages at most this many sources.
 inline constexpr std::size_t kOrphanSources = 4;
 
-// What an orphan averages: the kOrphanSources nearest of the sources that pass the weights, ties by
-// the lower record. Where none passes: the nearest of all, and not `matched`.
+// The sources that an orphan averages: the kOrphanSources nearest that pass the weights; the lower
+// record wins ties. Where none passes, it is the nearest source, and `matched` is false.
 struct Adopted {
   std::vector<std::uint32_t> sources;  // record numbers, nearest first
   bool matched = true;
 };
 
-// `search` holds the positions of the problem's sources.
+// Finds the sources for the orphan i. `search` holds the positions of the problem's sources.
 [[nodiscard]] Adopted adopt(const search::Search& search, const Problem& problem, std::uint32_t i);
 
-// Their mean, without areas: an orphan is no density. Adds to the counts of orphans.
+// The mean of `values` over the adopted sources, without the areas of [disk]. Adds to the counts of
+// orphans.
 [[nodiscard]] Rgb average_of(const Adopted& adopted, std::span<const Rgb> values,
                              Statistics& statistics);
 

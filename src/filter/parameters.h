@@ -48,23 +48,23 @@ struct BlockSize {
 struct WeightTerms {
   std::optional<float> normal = 0.95f;       // n_i . n_j >= t, t in [-1, 1]
   std::optional<float> reflectance = 0.05f;  // norm(rho_i - rho_j) <= t, t >= 0
-  bool visibility = true;                    // equal bits
+  bool visibility = true;                    // equal visibility bits
   std::optional<float> hit_distance;         // relative difference <= t, t >= 0
   std::optional<float> plane;                // abs((x_j - x_i) . n_i) <= t r_i, t >= 0
   std::optional<float> direction;            // omega_i . omega_j >= t, t in [-1, 1]
-  bool material = false;                     // equal
-  std::optional<float> gloss = 0.8f;         // of normals and directions: gloss_term(), t > 0
+  bool material = false;                     // equal material ids
+  std::optional<float> gloss = 0.8f;         // gloss_term() of weights.h, t > 0
 
   [[nodiscard]] static WeightTerms none();
-  // By the term's number in kTermNames (weights.h).
+  // Switches a term off, given its number in kTermNames (weights.h).
   void switch_off(std::size_t term);
 };
 
 enum class Estimator : std::uint8_t {
   average,  // [average]
-  disk,     // [disk], photon mapping's: divided by the area of the ball's disk
+  disk,     // [disk], as in photon mapping: the sum over the area of the ball's disk
   hash,     // [hash]: averages over the cells of a jittered grid, without search
-  control,  // [control]: each half of the sources as control variate of the other, unbiased
+  control,  // [control]: each half of the sources as control variate of the other; unbiased
   adaptive  // [adaptive]: [average] in the largest ball whose contributions agree
 };
 inline constexpr std::array<const char*, 5> kEstimatorNames = {"average", "disk", "hash", "control",
@@ -78,8 +78,8 @@ struct Parameters {
   std::uint32_t iterations = 1;  // >= 1
   std::uint32_t sources = 1;  // K >= 1: one record in K is a source, the others are queries alone
   Estimator estimator = Estimator::average;
-  // Of [adaptive]: a ball grows until what is around it differs with this many standard errors,
-  // > 0; measured in README.md.
+  // For [adaptive], > 0: a ball grows until the mean of the ring around it differs from its own by
+  // more than this many standard errors; measured in README.md.
   double agree = 1.5;
   search::Kind search = search::Kind::flann;
   bool count_refusals = false;  // pairs in the balls and refusals by term; about doubles the time
@@ -88,12 +88,13 @@ struct Parameters {
   void validate() const;
 };
 
-// A channel that parameters need, which of them, and how to do without:
+// A channel that parameters need, the option that needs it, and how to do without the channel:
 // {"normal", "--normal", "give --normal off"}.
 struct ChannelNeed {
   std::string_view channel, wanted_by, instead;
 };
-// Beyond `position`, `throughput`, `contribution`, `distance` and `pixel`, which every dump has.
+// The channels that `parameters` need in addition to `position`, `throughput`, `contribution`,
+// `distance` and `pixel`, which every dump has.
 [[nodiscard]] std::vector<ChannelNeed> optional_channels(const Parameters& parameters);
 
 }  // namespace psf::filter

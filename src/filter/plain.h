@@ -1,4 +1,4 @@
-// The plain engine: one neighbour search a query, one loop over what it found.
+// The plain engine: one neighbour search per query, and one loop over the neighbours.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// What there is to average over, the same for every engine.
+// The input of every engine: records to average, with their roles, radii and weights.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace psf::filter {
 
-// All spans by record number.
+// All spans are indexed by record number.
 struct Problem {
   const Records& records;
   const Roles& roles;             // at least one source
@@ -22,15 +22,16 @@ struct Problem {
   std::span<const float> area;  // A_j of [disk]; empty: [average]
 };
 
-// Holds what it has built over the sources from one application to the next. Two engines: that of
-// plain.h says what is right, that of engine/ is fast.
+// Applies [average] or [disk], and keeps its search structure from one application to the next.
+// There are two engines for balls: that of plain.h defines the result, that of engine/ is fast.
 class Engine {
  public:
   virtual ~Engine() = default;
 
-  // One application of [average] or [disk]: out[i] for every query from `values` of the sources,
-  // and neighbors[i], how many of them it was; 0 for an orphan. Adds to `statistics` what it
-  // counts. Same result for any number of threads. Throws Error{interrupted} on ^C.
+  // One application of [average] or [disk]. For every query i it writes the average of `values` of
+  // the sources to out[i], and the number of sources to neighbors[i], 0 for an orphan. Adds its
+  // counts to `statistics`. The result is the same for any number of threads. Throws
+  // Error{interrupted} on ^C.
   virtual void average(std::span<const Rgb> values, bool count_refusals, std::span<Rgb> out,
                        std::span<std::uint32_t> neighbors, Statistics& statistics) = 0;
 };

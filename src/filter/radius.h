@@ -1,4 +1,4 @@
-// [radius]: how far a record looks, shrinking as samples accumulate.
+// [radius]: the radii of the balls, which shrink as samples accumulate.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace psf::filter {
   return radius.r0 / std::sqrt(std::pow(std::max(1.0, n), radius.delta));
 }
 
-// f_i of a record, 0 where d_i is negative. `distance` is read unless the basis is `world`.
+// f_i of record i; d_i below 0 counts as 0. `distance` is read unless the basis is `world`.
 [[nodiscard]] inline double basis_of(const Radius& radius, const Records& records,
                                      const Block& block, std::size_t i) {
   if (radius.basis == RadiusBasis::world) return 1;
@@ -26,7 +26,7 @@ namespace psf::filter {
   return d * block.cameras[records.camera.empty() ? 0 : records.camera[i]].angle_per_pixel;
 }
 
-// r_i in world units for every record.
+// Writes r_i of every record to `out`, in world units.
 inline void radii(const Radius& radius, const Records& records, const Block& block,
                   std::vector<float>& out) {
   const double scale = radius_scale(radius, block.n);

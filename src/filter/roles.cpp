@@ -32,7 +32,7 @@ bool all_finite(const Vec3& v) {
   return v.x * 0 + v.y * 0 + v.z * 0 == 0;
 }
 
-// Of the records with a vertex those that are shaded; 1 where there is none.
+// The share of shaded records among those with a vertex; 1 where no record has a vertex.
 double shaded_share(const Records& records) {
   struct Counts {
     std::uint64_t vertices = 0, shaded = 0;
@@ -112,13 +112,13 @@ class Classifier {
   [[nodiscard]] bool is_source(std::size_t i) const {
     return (r_.flags[i] & kShaded) != 0 && (k_ == 1 || chosen(i));
   }
-  // Of a record without vertex: whether it would be a source if it had one.
+  // Whether record i, which has no vertex, would be a source if it had one.
   [[nodiscard]] bool is_input(std::size_t i) const {
     if (block_.shade_rate > 1) return is_source(i);
     if (shaded_share_ == 1) return k_ == 1 || chosen(i);
     return is_chosen(x_of(i), y_of(i), pass_of(i), shaded_share_ / k_);
   }
-  // Of a record without vertex: whether it would be shaded if it had one.
+  // Whether record i, which has no vertex, would be shaded if it had one.
   [[nodiscard]] bool would_be_shaded(std::size_t i) const {
     if (block_.shade_rate > 1) return (r_.flags[i] & kShaded) != 0;
     return shaded_share_ == 1 || is_chosen(x_of(i), y_of(i), pass_of(i), shaded_share_);
@@ -170,10 +170,10 @@ class Classifier {
   const Records& r_;
   const Block& block_;
   std::uint32_t k_;
-  double shaded_share_;  // of the records without vertex that count, for all that is known
+  double shaded_share_;  // share of shaded paths, estimated from the records with a vertex
   bool demodulate_;
   bool distance_, normal_, reflectance_, hit_distance_, direction_, roughness_;
-  bool shaded_alone_;  // what is not shaded is left out, with a vertex or without
+  bool shaded_alone_;  // unshaded records are left out, with a vertex or without
   std::uint64_t pixels_ = 0;
 };
 

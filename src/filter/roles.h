@@ -1,5 +1,4 @@
-// What each record of a block is to the filter: source, query, neither, or left out for non-finite
-// values.
+// The role of each record of a block: source, query, neither, or left out for non-finite values.
 #pragma once
 
 #include <cstdint>
@@ -13,34 +12,33 @@ namespace psf::filter {
 
 enum class Role : std::uint8_t {
   left_out,   // a value in use is not finite: it is in no average and no picture
-  no_vertex,  // it has u_i alone, which both pictures show, the filtered one and that without
-              // filter
-  unchosen,   // the same, but `--sources` did not choose it: the picture without filter lacks it
+  no_vertex,  // it has u_i alone, and is in both pictures, with and without filter
+  unchosen,   // it has u_i alone, but was not chosen: the picture without filter lacks it
   query,      // it has x_i but no c_i: it gets an average, and the picture without filter lacks it
   source      // it has both: it gets an average, is averaged for others, and is in both pictures
 };
 
-// Has a vertex, and is in use.
+// Whether a record has a vertex and is in use.
 [[nodiscard]] inline bool is_query(Role role) {
   return role == Role::query || role == Role::source;
 }
-// The picture without filter is the mean of these paths. Whether a path is among them does not
-// depend on whether it has a vertex, so no path weighs more than another.
+// Whether a path is in the picture without filter, which is the mean of such paths. This does not
+// depend on whether the path has a vertex, so no path weighs more than another.
 [[nodiscard]] inline bool is_input(Role role) {
   return role == Role::no_vertex || role == Role::source;
 }
 
 struct Roles {
-  std::vector<Role> of;  // by record
+  std::vector<Role> of;  // role of each record
   std::vector<std::uint32_t> queries,
       sources;  // record numbers, ascending; sources are queries too
 };
 
-// Looks only at the channels that `parameters` use. `hit_distance` may be infinite (a miss), not
-// NaN: where it is of an unshaded vertex, all of the block that is not shaded is left out, so that
-// what met nothing weighs no more than what met a surface, and counts for `hit_distance`. Under
-// demodulation c / rho must be finite too; where it is not, that counts for `reflectance`. Adds to
-// the counts of `statistics`.
+// Finds the role of each record, and looks only at the channels that `parameters` use. hit_distance
+// may be infinite (a miss) but not NaN: where an unshaded vertex has NaN, every unshaded record of
+// the block is left out and counted for `hit_distance`, so that paths that met nothing weigh no
+// more than paths that met a surface. Under demodulation c / rho must be finite too; a record where
+// it is not is counted for `reflectance`. Adds to the counts of `statistics`.
 [[nodiscard]] Roles find_roles(const Records& records, const Block& block,
                                const Parameters& parameters, Statistics& statistics);
 

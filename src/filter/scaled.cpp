@@ -15,10 +15,10 @@ constexpr int kLargest = 58;       // exponent: twelve squares of it, a box's di
 constexpr int kLeastExtent = -20;  // exponent: there is room below it for radii without digits lost
 constexpr int kFinite = 125;       // exponent: differences of coordinates are finite
 
-// Of all vertices that are finite, as those that are compared are.
+// Extreme lengths of all vertices whose position is finite; only such vertices are compared.
 struct Extremes {
-  float coordinate = 0, distance = 0;  // the largest, in absolute value
-  float least_radius = std::numeric_limits<float>::infinity(), largest_radius = 0;  // of those > 0
+  float coordinate = 0, distance = 0;  // largest absolute values
+  float least_radius = std::numeric_limits<float>::infinity(), largest_radius = 0;  // radii > 0
 
   void operator+=(const Extremes& other) {
     coordinate = std::max(coordinate, other.coordinate);

@@ -1,4 +1,4 @@
-// What a filter run counted and how long it took; blocks add up.
+// Counts and times of a filter run; those of blocks are added up.
 #pragma once
 
 #include <algorithm>
@@ -21,28 +21,29 @@ struct Statistics {
   std::uint64_t records = 0;
   std::uint64_t without_vertex = 0;  // contribute u_i alone
   std::uint64_t queries = 0;         // records with a vertex, in use
-  std::uint64_t sources = 0;         // of them, those averaged from
+  std::uint64_t sources = 0;         // queries that are sources
 
   std::uint64_t left_out = 0;  // records left out of averages and pictures
-  // Of those, by channel of kCheckedNames; a record counts for each channel that is bad.
+  // Records left out, by channel of kCheckedNames; a record counts for each channel that is not
+  // finite.
   std::array<std::uint64_t, kCheckedChannels> non_finite{};
-  std::uint64_t without_source = 0;  // queries of blocks that have no source at all, left out too
+  std::uint64_t without_source = 0;  // queries in blocks without any source; also left out
 
-  // Pairs (i, j) with chi = 1, self included, and those that a term refuses whatever the others
-  // say, by term of kTermNames; both only where `count_refusals` asks for it.
+  // The number of pairs (i, j) with chi = 1, the pair (i, i) included, and of those that each term
+  // of kTermNames alone refuses; counted only with Parameters::count_refusals.
   std::uint64_t candidates = 0;
   std::array<std::uint64_t, kTermCount> refused{};
   std::uint64_t accepted = 0;  // pairs with chi w_ij = 1
-  std::uint64_t min_neighbors = std::numeric_limits<std::uint64_t>::max();  // of a query; accepted
+  std::uint64_t min_neighbors = std::numeric_limits<std::uint64_t>::max();  // sources of a query
   std::uint64_t max_neighbors = 0;
-  std::uint64_t orphans = 0;            // queries without a source in their ball
-  std::uint64_t orphans_unmatched = 0;  // of them, those no source passes the weights of
+  std::uint64_t orphans = 0;            // queries without a source in their ball that passes
+  std::uint64_t orphans_unmatched = 0;  // orphans for which no source passes the weights
 
   double seconds_index = 0;   // roles, order, building the index
   double seconds_filter = 0;  // search, weights and sums
 
   Statistics& operator+=(const Statistics& other);
-  // A query that averages over so many sources.
+  // Counts a query that averages over `neighbors` sources.
   void add_query(std::uint64_t neighbors) {
     accepted += neighbors;
     min_neighbors = std::min(min_neighbors, neighbors);

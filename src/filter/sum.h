@@ -1,4 +1,4 @@
-// Sums of values in double, and what becomes of them: [average] or [disk].
+// Sums of values in double, and [average] or [disk] computed from them.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,8 @@ struct Sum {
   }
 };
 
-// `sum` of `count` > 0 values, with their areas if `disk`; `own` is the record's own value, all
-// there is where the disk has no area.
+// [average], or [disk] where `disk` is set, from the `sum` of `count` > 0 values, which are
+// multiplied by their areas for [disk]. Where the disk has no area it is the record's `own` value.
 [[nodiscard]] inline Rgb estimate(const Sum& sum, std::uint32_t count, bool disk, float r_i,
                                   const Rgb& own) {
   if (!disk) return sum.over(count);

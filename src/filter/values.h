@@ -1,4 +1,5 @@
-// What is averaged: c_j, or c_j / rho_j under demodulation; and [disk]'s area of a record.
+// The values that are averaged: c_j, or c_j / rho_j under demodulation; and the area of a record
+// for [disk].
 #pragma once
 
 #include <algorithm>
@@ -8,7 +9,8 @@
 
 namespace psf::filter {
 
-// By component; where rho is 0 nothing is divided, nor multiplied.
+// c / rho by component. Components where rho is 0 or less are not divided, nor multiplied by
+// remodulate().
 [[nodiscard]] inline Rgb demodulate(const Rgb& c, const Rgb& rho) {
   const auto divide = [](float v, float by) { return by > 0 ? v / by : v; };
   return {divide(c.x, rho.x), divide(c.y, rho.y), divide(c.z, rho.z)};
@@ -18,10 +20,11 @@ namespace psf::filter {
   return {multiply(v.x, rho.x), multiply(v.y, rho.y), multiply(v.z, rho.z)};
 }
 
-// Below it the projected area of a grazing record would outweigh all others.
+// The least cosine that surface_area() uses. With a smaller one, the area of a grazing record would
+// outweigh all others.
 inline constexpr float kSmallestCosine = 0.01f;
 
-// A_j of [disk]: the surface that record j stands for, squared world units.
+// A_j of [disk]: the surface area that a record represents, squared world units.
 [[nodiscard]] inline double surface_area(double angle_per_pixel, double distance,
                                          const Vec3& normal, const Vec3& direction,
                                          double samples_per_pixel) {

@@ -1,5 +1,5 @@
-// w_ij: could c_j have been generated in x_i? The one definition of every term, in float and in
-// this order of operations; every search and every kernel must decide as these functions do.
+// w_ij: whether c_j could have been generated at x_i. This is the only definition of every term, in
+// float and in this order of operations; every search and every kernel must decide as it does.
 #pragma once
 
 #include <array>
@@ -14,15 +14,15 @@
 namespace psf::filter {
 
 inline constexpr std::size_t kTermCount = 8;
-// In the order of WeightTerms; the names are those of the options.
+// The names of the terms, which are those of the options, in the order of WeightTerms.
 inline constexpr std::array<const char*, kTermCount> kTermNames = {
     "normal", "reflectance", "visibility", "hit-distance",
     "plane",  "direction",   "material",   "gloss"};
 
-// A bit for each term of kTermNames.
+// A set of terms: bit k stands for term k of kTermNames.
 using TermSet = std::uint32_t;
 
-// The number of the term that an option, "--normal", belongs to; kTermCount where it is none's.
+// The number of the term that an option such as "--normal" sets; kTermCount for other options.
 [[nodiscard]] inline std::size_t term_of(std::string_view option) {
   std::size_t k = 0;
   while (k < kTermCount && !(option.starts_with("--") && option.substr(2) == kTermNames[k])) ++k;
@@ -38,7 +38,8 @@ using TermSet = std::uint32_t;
 [[nodiscard]] inline bool visibility_term(std::uint32_t bits_i, std::uint32_t bits_j) {
   return bits_i == bits_j;
 }
-// Relative to the longer of the two; a miss (infinity) equals another miss and nothing else.
+// Whether the difference is at most t times the longer distance. A miss (infinity) passes with
+// another miss alone.
 [[nodiscard]] inline bool hit_distance_term(float h_i, float h_j, float t) {
   const float longer = h_i < h_j ? h_j : h_i;
   return h_i == h_j || (std::abs(h_i - h_j) <= t * longer && std::isfinite(longer));
@@ -55,15 +56,16 @@ using TermSet = std::uint32_t;
   return m_i == m_j;
 }
 
-// alpha of GGX: how far from n the microfacets of a glossy lobe turn, about, in radians. Infinite
-// where there is no such lobe: then no direction matters.
+// alpha of GGX: about the angle in radians by which the microfacets of a glossy lobe turn away from
+// n. Infinite where there is no glossy lobe, so that directions do not matter.
 [[nodiscard]] inline float lobe_width(float roughness) {
   return roughness < 1 ? roughness * roughness : std::numeric_limits<float>::infinity();
 }
-// Of the squares. Directions weigh more than they turn the lobe: they turn because x moves, and
-// then what is near moves in its mirror much more than that.
+// The weight of the squared distance of directions in gloss_term(). It is large because directions
+// turn where x moves, and then near objects move in the mirror by much more than the direction.
 inline constexpr float kDirectionWeight = 100;
-// t > 0.
+// Whether the normals and the weighted directions together differ by at most t > 0 times the lobe
+// width of x_i.
 [[nodiscard]] inline bool gloss_term(const Vec3& n_i, const Vec3& n_j, const Vec3& omega_i,
                                      const Vec3& omega_j, float width_i, float t) {
   const float reach = t * width_i;
@@ -71,8 +73,8 @@ inline constexpr float kDirectionWeight = 100;
          reach * reach;
 }
 
-// The product of the terms that are on. w_ii = 1 whatever the terms say: the caller does not ask
-// for it.
+// The product of the terms that are on. w_ii is 1 whatever the terms say, so callers do not test
+// the pair (i, i).
 class Weights {
  public:
   Weights(const Records& records, const WeightTerms& terms)
@@ -87,7 +89,8 @@ class Weights {
            !refuses_hit_distance(i, j) && !refuses_plane(i, j, r_i) && !refuses_direction(i, j) &&
            !refuses_material(i, j) && !refuses_gloss(i, j);
   }
-  // Bit k set: term k refuses, whatever the others say. 0 exactly where pass().
+  // The terms that refuse the pair, each by itself: bit k is set where term k refuses. It is 0
+  // exactly where pass() is true.
   [[nodiscard]] std::uint32_t refusers(std::uint32_t i, std::uint32_t j, float r_i) const {
     const bool by[kTermCount] = {refuses_normal(i, j),     refuses_reflectance(i, j),
                                  refuses_visibility(i, j), refuses_hit_distance(i, j),

@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "formats/error.h"
+#include "core/error.h"
 
 namespace psf::render {
 

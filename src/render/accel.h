@@ -1,4 +1,4 @@
-// Ray queries against the surfaces of a scene: all intersection is Embree's.
+// Ray queries against the surfaces of a scene, answered by Embree.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,24 @@
 
 namespace psf::render {
 
-// Geometry g < meshes.size() is mesh g and `primitive` its triangle, u and v the barycentric
-// weights of its second and third corner. Geometry meshes.size() is all spheres, `primitive` the
-// sphere.
+// For `geometry` < meshes.size(), mesh number `geometry` was hit: `primitive` is the triangle, u
+// and v are the barycentric weights of its second and third corner. For `geometry` == meshes.size()
+// a sphere was hit, and `primitive` is its number.
 struct Hit {
   float distance = std::numeric_limits<float>::infinity();
   float u = 0, v = 0;
   std::uint32_t geometry = RTC_INVALID_GEOMETRY_ID, primitive = 0;
-  Vec3 normal{0, 0, 0};  // geometric, not unit, as Embree gives it
+  Vec3 normal{0, 0, 0};  // Embree's geometric normal, not of unit length
 };
 
 class Accel {
  public:
-  // Shares the buffers of the scene, which must outlive it. Throws Error{limit} where Embree
-  // refuses.
+  // Uses the buffers of the scene, which must outlive this object. Throws Error{limit} where Embree
+  // reports an error.
   explicit Accel(const Scene& scene);
 
-  // The nearest hit at a distance in (0, reach]; false for none. `direction` is unit.
+  // Finds the nearest hit at a distance in (0, reach]; returns false where there is none.
+  // `direction` is a unit vector.
   [[nodiscard]] bool intersect(const Vec3& origin, const Vec3& direction, Hit& hit,
                                float reach = std::numeric_limits<float>::infinity()) const {
     RTCRayHit query;
@@ -42,7 +43,8 @@ class Accel {
     return true;
   }
 
-  // Whether anything lies at origin + t * direction for t in (0, reach]; `direction` of any length.
+  // Whether any surface lies at origin + t * direction for t in (0, reach]. `direction` may have
+  // any length.
   [[nodiscard]] bool occluded(const Vec3& origin, const Vec3& direction, float reach) const {
     RTCRay ray;
     set_ray(ray, origin, direction, reach);

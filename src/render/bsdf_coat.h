@@ -1,4 +1,4 @@
-// How much a rough dielectric coat reflects, so that the diffuse base beneath gets the rest.
+// The albedo of a rough dielectric coat; the diffuse base beneath gets the rest of the light.
 #pragma once
 
 #include <array>
@@ -6,28 +6,29 @@
 
 namespace psf::render {
 
-// Directional albedo E(mu, roughness) of the single-scattering GGX lobe of a dielectric, and its
-// cosine-weighted mean. Tabulated by deterministic quadrature: mu and perceptual roughness each
-// linear.
+// The directional albedo E(mu, roughness) of the single-scattering GGX lobe of a dielectric, and
+// its cosine-weighted mean, where mu is the cosine. They are tabulated by deterministic quadrature
+// and interpolated linearly in mu and perceptual roughness.
 class CoatAlbedo {
  public:
   explicit CoatAlbedo(float ior);
-  // Of Schlick's Fresnel, which is linear in the reflectance f0 at normal incidence: this is the
-  // albedo for f0 = 1, edge() that for 0, and f0 E1 + (1 - f0) E0 is any other.
+  // The albedo with Schlick's Fresnel, which is linear in the reflectance f0 at normal incidence.
+  // The returned table E1 is for f0 = 1, its edge() E0 for f0 = 0; f0 E1 + (1 - f0) E0 is the
+  // albedo for any f0.
   static CoatAlbedo schlick();
   [[nodiscard]] const CoatAlbedo* edge() const { return edge_.get(); }  // null for a dielectric
 
   // One roughness, ready for many directions.
   struct Row {
     const float *lower, *upper;  // kCosines values each
-    float weight;                // of upper
-    float mean;                  // of E over the hemisphere, cosine-weighted
+    float weight;                // weight of `upper` in the interpolation
+    float mean;                  // cosine-weighted mean of E over the hemisphere
     [[nodiscard]] float at(float mu) const;
   };
   [[nodiscard]] Row row(float roughness) const;
 
  private:
-  // `fresnel`: reflectance of a cosine.
+  // `fresnel` returns the reflectance for a cosine.
   template <class Fresnel>
   static CoatAlbedo tabulate(const Fresnel& fresnel);
   CoatAlbedo() = default;

@@ -1,16 +1,17 @@
 // Checks of a camera, its frame, its rays and its matrices.
 #include "render/camera.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
-#include "formats/error.h"
+#include "core/error.h"
 
 namespace psf::render {
 namespace {
 
-constexpr std::uint32_t kMaxSize = 65535;  // so that a pixel index fits 32 bits
-constexpr double kNear = 1e-2;             // depth only, pixels do not depend on it
+constexpr double kNear = 1e-2;  // depth only, pixels do not depend on it
 
 [[noreturn]] void fail(const Camera& camera, const std::string& what) {
   throw Error(ErrorCode::bad_input, "camera \"" + camera.name + "\": " + what);
@@ -24,9 +25,9 @@ void validate(const Camera& camera) {
   if (!(camera.fov > 0 && camera.fov < std::numbers::pi_v<float>)) {
     fail(camera, "the field of view must lie between 0 and 180 degrees");
   }
-  if (camera.width == 0 || camera.height == 0 || camera.width > kMaxSize ||
-      camera.height > kMaxSize) {
-    fail(camera, "width and height must lie between 1 and 65535 pixels");
+  if (camera.width == 0 || camera.height == 0 || camera.width > kMaxSide ||
+      camera.height > kMaxSide) {
+    fail(camera, fmt::format("width and height must lie between 1 and {} pixels", kMaxSide));
   }
   if (!(camera.lens_radius >= 0) || !std::isfinite(camera.lens_radius)) {
     fail(camera, "the radius of the lens must be 0 or more");

@@ -1,4 +1,4 @@
-// Camera rays, and what the file says of a camera.
+// Camera rays, and the description of a camera for the path-vertex buffer.
 #pragma once
 
 #include "formats/metadata.h"
@@ -7,8 +7,8 @@
 
 namespace psf::render {
 
-// A pinhole or thin-lens camera made ready. Camera space: looks along -z, +y up, +x right; the
-// picture's pixel (0, 0) is at the top left, so pixel y grows toward -y.
+// A pinhole or thin-lens camera, prepared for rays. In camera space it looks along -z, with +y up
+// and +x to the right. The pixel (0, 0) is at the top left, so pixel y grows toward -y.
 class CameraRays {
  public:
   // Throws Error{bad_input} naming the camera where it has no view: eye at target, up along the
@@ -19,9 +19,10 @@ class CameraRays {
   // unit square, used where the lens has a radius. The direction is unit.
   [[nodiscard]] Ray ray(const Vec2& pixel, const Vec2& lens) const;
   [[nodiscard]] bool has_lens() const { return lens_radius_ > 0; }
-  // The projection has an infinite far plane: clip = projection * camera_to_world^-1 * position,
-  // x_pixel = (clip.x / clip.w + 1) / 2 * width, y_pixel = (1 - clip.y / clip.w) / 2 * height.
-  // In world units; `space`: of the camera.
+  // The description of the camera for the path-vertex buffer, in world units. `space` is the space
+  // in which the camera is given. The projection has an infinite far plane. A position projects to
+  // clip = projection * camera_to_world^-1 * position, x_pixel = (clip.x / clip.w + 1) / 2 * width,
+  // y_pixel = (1 - clip.y / clip.w) / 2 * height.
   [[nodiscard]] formats::CameraInfo info(const Space& space = {}) const;
 
  private:

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/load_parts.h"
 
 namespace psf::render {

@@ -1,4 +1,4 @@
-// How much of a scene file's shapes there is, with all their copies.
+// Counts the triangles and spheres of a scene file's shapes, with all their copies.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@ namespace psf::render {
 
 class CopyCount {
  public:
-  // Counts `copies` of a shape, which become one. Throws Error{limit} naming `place` for more
-  // triangles and spheres than a scene takes, or more vertices than a mesh does.
+  // Counts `copies` of a shape, which become one mesh. Throws Error{limit} that names `place` where
+  // the scene has more triangles and spheres, or the mesh more vertices, than is allowed.
   void add(const JsonCursor& place, std::size_t primitives, std::size_t vertices,
            std::size_t copies);
 

@@ -8,8 +8,8 @@
 
 namespace psf::render {
 
-// Probabilities proportional to weights >= 0. All zero or none: total() is 0 and it must not be
-// sampled.
+// Probabilities proportional to weights >= 0. Where all weights are 0 or there are none, total() is
+// 0 and sample() must not be called.
 class Distribution {
  public:
   Distribution() = default;
@@ -22,7 +22,8 @@ class Distribution {
   [[nodiscard]] float probability(std::size_t k) const {
     return cumulative_[k + 1] - cumulative_[k];
   }
-  // The k whose share of [0, 1) holds u, which becomes its place within that share: uniform again.
+  // The k whose part of [0, 1) holds u. u is replaced by its place within this part, which is again
+  // uniform in [0, 1).
   [[nodiscard]] std::size_t sample(float& u) const;
 
  private:

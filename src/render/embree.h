@@ -1,4 +1,4 @@
-// Embree 3 and 4 under one name: the few calls whose signatures differ.
+// Wrappers of the calls whose signatures differ between Embree 3 and 4.
 #pragma once
 
 #if __has_include(<embree4/rtcore.h>)

@@ -10,7 +10,8 @@
 
 namespace psf::render {
 
-// A constant sky is not sampled: every material's own scattering is the perfect density for it.
+// A constant sky is not sampled, because the scattering of every material is already the best
+// density for it.
 class EnvironmentLight {
  public:
   EnvironmentLight() = default;
@@ -20,10 +21,11 @@ class EnvironmentLight {
   [[nodiscard]] bool sampled() const { return map_ != nullptr; }
   // Integral of luminance over the sphere of directions.
   [[nodiscard]] float power() const { return power_; }
-  // Radiance arriving from the unit `direction` (pointing to the sky). Bilinear; the map does not
-  // wrap at the poles.
+  // The radiance that arrives from the sky in the unit `direction`, which points to the sky. The
+  // map is interpolated bilinearly and does not wrap at the poles.
   [[nodiscard]] Rgb radiance(const Vec3& direction) const;
-  // Only where sampled(). The density is constant over each texel.
+  // Samples a direction, and returns the density of a direction; only where sampled() is true. The
+  // density is constant over each texel.
   [[nodiscard]] Vec3 sample(Vec2 u, float& pdf) const;
   [[nodiscard]] float pdf(const Vec3& direction) const;
 
@@ -34,7 +36,7 @@ class EnvironmentLight {
 
   Rgb scale_{0, 0, 0};
   const Texture* map_ = nullptr;
-  float cosine_ = 1, sine_ = 0;  // of the rotation
+  float cosine_ = 1, sine_ = 0;  // of the map's rotation angle
   float power_ = 0;
   Distribution rows_;
   std::vector<Distribution> columns_;

@@ -12,13 +12,13 @@ namespace psf::render {
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kInvPi = std::numbers::inv_pi_v<float>;
 
-// The caller knows that v is not zero.
+// The unit vector along v, which must not be zero.
 [[nodiscard]] inline Vec3 normalize(const Vec3& v) {
   return v * (1 / std::sqrt(length_sq(v)));
 }
 
-// The unit normal of a triangle with these edges, and twice its area; zero where it has none. In
-// float, or where squares would not be floats, in double.
+// The unit normal of a triangle with these edges, and twice its area as `size`. Both are 0 for a
+// triangle without area. Computed in float, or in double where squares do not fit in a float.
 struct TriangleNormal {
   Vec3 normal{0, 0, 0};
   float size = 0;
@@ -38,7 +38,8 @@ struct TriangleNormal {
   }
 };
 
-// Local coordinates have n as z. Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
+// An orthonormal frame whose z axis is n. Duff et al. 2017, "Building an Orthonormal Basis,
+// Revisited".
 struct Frame {
   explicit Frame(const Vec3& normal) : n(normal) {
     const float sign = std::copysign(1.0f, n.z);
@@ -59,19 +60,19 @@ struct Frame {
   return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
-// Density cos / pi about +z.
+// A direction in the hemisphere around +z with density cos / pi.
 [[nodiscard]] inline Vec3 cosine_hemisphere(const Vec2& u) {
   return around_axis(u.x, u.y, std::sqrt(1 - u.y));
 }
 
-// Density 1 / (4 pi).
+// A direction with density 1 / (4 pi).
 [[nodiscard]] inline Vec3 uniform_sphere(const Vec2& u) {
   const float z = 1 - 2 * u.y;
   return around_axis(u.x, 4 * u.y * (1 - u.y), z);
 }
 
-// Uniform in the cone about +z; `height` = 1 - cos of its half angle, which keeps narrow cones
-// exact. Density 1 / (2 pi height).
+// A uniform direction in the cone around +z, with density 1 / (2 pi height). `height` is 1 - cos of
+// the half angle, which keeps narrow cones exact.
 [[nodiscard]] inline Vec3 uniform_cone(const Vec2& u, float height) {
   const float h = u.y * height;
   return around_axis(u.x, h * (2 - h), 1 - h);
@@ -85,8 +86,8 @@ struct Frame {
   return sin_sq / (1 + std::sqrt(std::max(0.0f, 1 - sin_sq)));
 }
 
-// The weight of a sample with density `a` where `b` is the other strategy's (power heuristic, Veach
-// 1997). Neither a huge nor a zero `b` makes it non-finite; a > 0.
+// The weight of a sample with density a > 0, where b is the density of the other strategy (power
+// heuristic, Veach 1997). The result is finite for a huge and for a zero b.
 [[nodiscard]] inline float mis_weight(float a, float b) {
   const float ratio = b / a;
   return 1 / (1 + ratio * ratio);

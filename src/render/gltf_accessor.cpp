@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/gltf_parts.h"
 
 namespace psf::render {
@@ -56,7 +56,7 @@ struct Elements {
   std::size_t stride = 0, component_size = 0;
 };
 
-// Of the object that has "bufferView" and "byteOffset".
+// The elements that an object with "bufferView" and "byteOffset" describes.
 Elements elements(GltfLoad& load, const JsonCursor& json, std::size_t count, std::size_t components,
                   int type) {
   const JsonCursor index = json.at("bufferView");
@@ -83,7 +83,7 @@ Elements elements(GltfLoad& load, const JsonCursor& json, std::size_t count, std
 
 struct Accessor {
   JsonCursor json;
-  int type = kFloat;  // of components
+  int type = kFloat;  // type of the components
   bool normalized = false;
   std::size_t count = 0, components = 0;
 };

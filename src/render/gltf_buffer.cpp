@@ -6,7 +6,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/gltf_parts.h"
 #include "render/whole_file.h"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/gltf_parts.h"
 
 namespace psf::render {
@@ -19,7 +19,7 @@ enum class Support {
 struct Extension {
   std::string_view name;
   Support support;
-  std::string_view meaning;  // of one that is left out
+  std::string_view meaning;  // what an extension that is left out is for
 };
 
 constexpr Extension kExtensions[] = {

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/gltf_parts.h"
 #include "render/json_file.h"
 #include "render/whole_file.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/gltf_parts.h"
 
 namespace psf::render {
@@ -47,8 +47,8 @@ void add_gltf_camera(GltfLoad& load, const JsonCursor& index, const std::string&
   camera.up = turn(to_scene, {0, 1, 0});
   if (const auto aspect_json = lens.find("aspectRatio")) {
     const double aspect = aspect_json->number({1e-4, 1e4, "from 0.0001 to 10000"});
-    camera.height =
-        static_cast<std::uint32_t>(std::lround(std::clamp(camera.width / aspect, 1.0, 65536.0)));
+    camera.height = static_cast<std::uint32_t>(
+        std::lround(std::clamp(camera.width / aspect, 1.0, double{kMaxSide})));
     camera.fov = static_cast<float>(2 * std::atan(std::tan(double{yfov} / 2) * aspect));
   } else {
     camera.fov = camera.vertical_fov = yfov;  // the picture is a square unless another is asked for

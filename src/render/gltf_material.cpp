@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/gltf_parts.h"
 
 namespace psf::render {
@@ -20,7 +20,7 @@ struct Reader {
   std::size_t index;
   std::string place;
   Material material{};
-  std::optional<GltfCoordinates> coordinates{};  // of the first texture
+  std::optional<GltfCoordinates> coordinates{};  // coordinates of the first texture
 
   void leave_out(const std::string& what) { load.leave_out(what, place); }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/gltf_parts.h"
 #include "render/shapes.h"
 

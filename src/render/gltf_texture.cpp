@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/gltf_parts.h"
 
 namespace psf::render {

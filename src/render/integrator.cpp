@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/integrators.h"
 
 namespace psf::render {

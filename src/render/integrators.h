@@ -7,7 +7,7 @@
 
 namespace psf::render {
 
-// `path`, and `direct` by settings.name.
+// Makes `path` or `direct`, whichever settings.name says.
 [[nodiscard]] std::unique_ptr<Integrator> make_path_integrator(const Scene& scene,
                                                                const IntegratorSettings& settings);
 [[nodiscard]] std::unique_ptr<Integrator> make_ao_integrator(const Scene& scene,

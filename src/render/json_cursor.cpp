@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/json_file.h"
 
 namespace psf::render {

@@ -17,7 +17,7 @@
 
 namespace psf::render {
 
-// Numbers that a getter takes; `text` ends the sentence "expected a number ...".
+// The range of numbers that a getter accepts; `text` ends the sentence "expected a number ...".
 struct Range {
   double min = -FLT_MAX, max = FLT_MAX;
   const char* text = "that fits a 32-bit float";
@@ -34,21 +34,21 @@ class JsonCursor {
   JsonCursor(const nlohmann::json& root, std::string file)
       : value_(&root), file_(std::move(file)) {}
 
-  // This is an object with no keys but these and "comment", else the error suggests the nearest of
-  // them.
+  // Checks that this is an object with no keys except `known` and "comment". The error suggests the
+  // nearest known key.
   void check_keys(std::span<const std::string_view> known) const;
   void check_keys(std::initializer_list<std::string_view> known) const {
     check_keys(std::span(known.begin(), known.size()));
   }
-  [[nodiscard]] JsonCursor at(std::string_view key) const;  // of an object; missing: an error
+  [[nodiscard]] JsonCursor at(std::string_view key) const;  // member of an object; must exist
   [[nodiscard]] std::optional<JsonCursor> find(std::string_view key) const;
-  [[nodiscard]] std::vector<JsonCursor> items() const;  // of an array
+  [[nodiscard]] std::vector<JsonCursor> items() const;  // the items of an array
   // Items of the array under `key`, none where the key is missing.
   [[nodiscard]] std::vector<JsonCursor> items(std::string_view key) const;
 
-  [[nodiscard]] std::size_t size() const;                  // of an array
+  [[nodiscard]] std::size_t size() const;                  // length of an array
   [[nodiscard]] JsonCursor item(std::size_t index) const;  // index < size()
-  [[nodiscard]] std::vector<std::string> keys() const;     // of an object
+  [[nodiscard]] std::vector<std::string> keys() const;     // the keys of an object
   [[nodiscard]] bool is_array() const;
   [[nodiscard]] bool is_object() const;
   [[nodiscard]] bool is_text() const;
@@ -58,13 +58,13 @@ class JsonCursor {
   [[nodiscard]] std::uint64_t whole(std::uint64_t max = std::uint64_t{1} << 53) const;
   [[nodiscard]] bool boolean() const;
   [[nodiscard]] std::string text() const;
-  // One of `known`; its index.
+  // The index in `known` of the text, which must be one of them.
   [[nodiscard]] std::size_t choice(std::span<const std::string_view> known) const;
   [[nodiscard]] Vec2 vec2(const Range& range = kAnyNumber) const;
   [[nodiscard]] Vec3 vec3(const Range& range = kAnyNumber) const;
   [[nodiscard]] Imath::V3d vec3d(const Range& range = kAnyNumber) const;
   [[nodiscard]] double real(const Range& range = kAnyNumber) const;
-  [[nodiscard]] Vec3 direction() const;             // normalised; zero: an error
+  [[nodiscard]] Vec3 direction() const;             // normalised; throws for the zero vector
   [[nodiscard]] Rgb rgb(const Range& range) const;  // [r, g, b] or one number for grey
   [[nodiscard]] std::vector<double> numbers(std::size_t count,
                                             const Range& range = kAnyNumber) const;

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/whole_file.h"
 
 namespace psf::render {
@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMaxDepth = 512;  // of values in values
+constexpr int kMaxDepth = 512;  // deepest nesting of values
 
 // "3:17", both from 1, of the byte at `offset`.
 std::string line_and_column(std::string_view text, std::size_t offset) {
@@ -52,12 +52,12 @@ json parse_json(std::string text, const std::string& path) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("{}:{}: {}", path, line_and_column(in.view(), offset), what));
   };
-  // Of the character that was read last.
+  // The offset of the character that was read last.
   const auto offset = [&in] {
     const std::streamoff now = in.rdbuf()->pubseekoff(0, std::ios::cur, std::ios::in);
     return static_cast<std::size_t>(std::max<std::streamoff>(now, 1) - 1);
   };
-  std::vector<std::set<std::string>> keys;  // of the objects around the current place
+  std::vector<std::set<std::string>> keys;  // keys so far of the objects around the current place
   const auto watch = [&](int depth, json::parse_event_t event, json& parsed) {
     if (depth > kMaxDepth) {
       fail(offset(), fmt::format("more than {} values within values", kMaxDepth));

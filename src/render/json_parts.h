@@ -12,7 +12,7 @@
 
 namespace psf::render {
 
-// What the parts share while one JSON file is read.
+// The state that the parts share while one JSON file is read.
 struct JsonLoad {
   Scene& scene;
   TextureTable textures;
@@ -21,22 +21,23 @@ struct JsonLoad {
   explicit JsonLoad(Scene& target) : scene(target), textures(target) {}
 };
 
-// One material of "materials"; its name must be new.
+// Reads one material of "materials"; its name must be new.
 void read_material(const JsonCursor& json, JsonLoad& load);
-// Index of the material that the key "material" names; kNone where the key is missing and
+// The index of the material that the key "material" names; kNone where the key is missing and
 // `required` is false.
 [[nodiscard]] int read_material_name(const JsonCursor& json, const Scene& scene, bool required);
 
-// Where a shape goes, of row vectors, p * m. Unless Space::exact the numbers are floats, and so are
-// those of products.
+// The transform of a shape, for row vectors, p * m. Unless Space::exact is set, its numbers, and
+// those of products, are rounded to float.
 using Placement = Imath::M44d;
 [[nodiscard]] Placement product(const Placement& a, const Placement& b, bool exact);
 
-// The keys "transform" and "repeat" of a shape: where each copy goes, at least one. Throws
+// The placements of a shape's copies, at least one, by its keys "transform" and "repeat". Throws
 // Error{limit} where there are more than kMaxCopies.
 [[nodiscard]] std::vector<Placement> read_placements(const JsonCursor& json, bool exact);
 
-// A shape and its copies, at all of `placements` (copies of the group around it).
+// Reads a shape and adds its copies at each of `placements`, which are the copies of the
+// surrounding group. `depth`: number of groups around the shape.
 void read_shape(const JsonCursor& json, const std::vector<Placement>& placements, JsonLoad& load,
                 int depth = 0);
 

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <optional>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/json_parts.h"
 #include "render/shapes.h"
 
 namespace psf::render {
 namespace {
 
-constexpr int kMaxDepth = 32;  // of groups within groups
+constexpr int kMaxDepth = 32;  // deepest nesting of groups
 constexpr std::uint32_t kMaxSegments = 65536;
 
 // What is taken off the coordinates of a shape, and added by its placement: its first point, so

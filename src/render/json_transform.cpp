@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/json_parts.h"
 
 namespace psf::render {

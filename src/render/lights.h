@@ -1,5 +1,5 @@
-// All light sources of a scene: sampling them from a point, and the density of that for what
-// scattering hits.
+// All light sources of a scene: samples them from a point, and weights the light that scattering
+// finds by the density of these samples.
 #pragma once
 
 #include <cstdint>
@@ -14,38 +14,40 @@ namespace psf::render {
 
 struct LightSample {
   Vec3 direction;  // unit, toward the light
-  Vec3 target;     // where on the light, just off its surface; meaningless at infinity
+  Vec3 target;     // point on the light, just off its surface; undefined for lights at infinity
   bool infinite;
-  Rgb weight;  // radiance / pdf; of lights without extent: irradiance on a facing surface
-  float pdf;   // by solid angle; 0 for a light without extent, which scattering never hits
+  Rgb weight;  // radiance / pdf; for lights without extent: irradiance on a facing surface
+  float pdf;   // per solid angle; 0 for a light without extent, which scattering never hits
 };
 
-// The lights in the order of their numbers: Scene::lights, then emissive meshes, then emissive
-// spheres, as they come in the scene. An emissive surface of zero area is none. The sky is number
-// count(), without a visibility bit, and can be sampled where it is a map. A directional light with
-// an angle is a disk in the sky that rays see.
+// Lights are numbered: first Scene::lights, then emissive meshes, then emissive spheres, each in
+// the scene's order. An emissive surface of zero area is not a light. The sky has the number
+// count(), but no visibility bit, and can be sampled where it is a map. A directional light with an
+// angle is a disk in the sky that rays can meet.
 class Lights {
  public:
-  // Tells `shapes` its emitters. `radius`: of a sphere around the scene. The scene must outlive it.
+  // Tells `shapes` which surfaces emit. `radius`: that of a sphere around the scene. The scene must
+  // outlive this object.
   Lights(const Scene& scene, Shapes& shapes, float radius);
 
   [[nodiscard]] std::size_t count() const { return lights_.size(); }  // without the sky
   [[nodiscard]] bool sky_sampled() const { return sky_.sampled(); }
   [[nodiscard]] std::vector<std::string> names() const;
 
-  // One point on light `light` (count(): the sky) as seen from `from`; false where none of it is in
-  // reach there. `u` is not used by lights without extent.
+  // Samples a point on light `light`, or the sky for count(), as seen from `from`. Returns false
+  // where no light from it can arrive there. Lights without extent do not use `u`.
   [[nodiscard]] bool sample(std::size_t light, const Surface& from, const Vec2& u,
                             LightSample& sample) const;
   [[nodiscard]] bool has_extent(std::size_t light) const;
 
-  // Choice of one light, the sky included, by power. None: choices() is 0.
+  // choose() chooses one light, or the sky, by power. choices() is the number of candidates; where
+  // it is 0, choose() must not be called.
   [[nodiscard]] std::size_t choices() const { return choice_.total() > 0 ? choice_.size() : 0; }
   [[nodiscard]] std::size_t choose(float u, float& probability) const;
 
-  // What scattering at `from` found: `pdf` is the scattering's density of `direction` (0 for a
-  // perfect lobe and for the camera, which no light sample competes with), `every` whether `from`
-  // sampled every light or chose one.
+  // A ray that scattering sent from `from`. `pdf`: density of `direction` by scattering, 0 for a
+  // perfect lobe and for the camera, with which light sampling does not compete. `every`: whether
+  // `from` sampled every light, or one chosen by power.
   struct Arrival {
     Vec3 from, direction;
     float pdf;
@@ -53,7 +55,7 @@ class Lights {
   };
   // Radiance that `hit` emits toward the arrival's origin, weighted against light sampling.
   [[nodiscard]] Rgb emitted(const Arrival& arrival, const Surface& hit) const;
-  // Radiance from infinity, weighted likewise.
+  // Radiance that arrives from infinity, weighted against light sampling.
   [[nodiscard]] Rgb escaped(const Arrival& arrival) const;
 
  private:
@@ -63,10 +65,10 @@ class Lights {
     bool both_sides = false;
     Rgb radiance;      // point, spot: intensity; directional: irradiance; else radiance
     Vec3 position;     // sphere: centre
-    Vec3 direction;    // directional, sun: toward the light; spot: of its axis
+    Vec3 direction;    // directional, sun: toward the light; spot: along its axis
     float extent = 0;  // sphere: radius; sun: 1 - cos of its angular radius; mesh: 1 / area
     float cos_inner = 1, cos_outer = 0;
-    const Texture* texture = nullptr;  // of the emission
+    const Texture* texture = nullptr;  // texture of the emission
     const Mesh* mesh = nullptr;
     std::size_t first = 0;  // mesh: its first triangle in triangles_
     Distribution areas;     // mesh
@@ -83,7 +85,7 @@ class Lights {
   [[nodiscard]] static Rgb radiance(const Record& light, const Vec2& uv);
   [[nodiscard]] bool sample_mesh(const Record& light, const Surface& from, Vec2 u,
                                  LightSample& sample) const;
-  // `own`: `from` lies on the inside of this very sphere.
+  // `own`: whether `from` lies on the inside of this sphere.
   [[nodiscard]] static bool sample_sphere(const Record& light, const Surface& from, bool own,
                                           const Vec2& u, LightSample& sample);
   [[nodiscard]] static float sphere_pdf(const Record& light, const Vec3& from, bool inside);

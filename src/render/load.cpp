@@ -6,8 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/error.h"
 #include "core/lower.h"
-#include "formats/error.h"
 #include "render/load_parts.h"
 
 namespace psf::render {

@@ -1,4 +1,4 @@
-// Scene files: JSON of ours, OBJ with MTL, glTF and GLB.
+// Loads scene files: psf's JSON, OBJ with MTL, glTF and GLB.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,10 @@
 
 namespace psf::render {
 
-// What the command line adds to or changes in a scene. A pose (eye, target, up) leaves one camera,
-// the first, which keeps what is not given. A sky replaces the environment; a sun is added to the
-// lights, from (0.4, 1, 0.3) and of irradiance 3 where only one of the two is given.
+// Changes of a scene by the command line. Where eye, target or up is given, only the first camera
+// stays, and keeps the values that are not given. A sky replaces the environment. A sun is added to
+// the lights where its direction or its irradiance is given; if only one is given, the direction is
+// (0.4, 1, 0.3) or the irradiance 3.
 struct SceneOverrides {
   std::optional<Imath::V3d> eye, target;  // world units
   std::optional<Vec3> up;
@@ -23,17 +24,18 @@ struct SceneOverrides {
   float sun_angle = 0.00465f;          // angular radius, radians
 };
 
-// Loads by extension, applies the overrides, validates, computes the hash. A scene without camera
-// gets one that sees all of it. Throws Error{io} for a missing file, Error{bad_input} naming file
+// Loads a scene by its file's extension, applies the overrides, validates the scene and computes
+// its hash. A scene without camera gets one that sees all of it. Throws Error{io} for a missing
+// file, Error{bad_input} naming file
 // and place (line, JSON path), Error{usage} naming the option of a senseless override, Error{limit}
 // for more than 2^27 triangles and spheres, for a scene that is too large, too small or, for its
 // size, too far from the origin, and for a sphere whose radius is 8,192 times a camera's distance.
 [[nodiscard]] Scene load_scene(const std::string& path, const SceneOverrides& overrides = {});
 
-// What a dump, whose positions are floats in world units, keeps of the scene.
+// The precision of the scene in a dump, whose positions are floats in world units.
 struct WorldDigits {
-  double across = 0, reach = 0;  // longest side of the scene; its farthest point from the origin
-  double step = 0;               // between floats that far from the origin
+  double across = 0, reach = 0;  // longest side of the scene; greatest distance from the origin
+  double step = 0;               // distance between neighbouring floats at `reach`
   [[nodiscard]] double steps() const;
 };
 [[nodiscard]] WorldDigits world_digits(const Scene& scene);

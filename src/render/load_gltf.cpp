@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/gltf_parts.h"
 
 namespace psf::render {
 namespace {
 
-constexpr int kMaxDepth = 512;  // of nodes within nodes
+constexpr int kMaxDepth = 512;  // deepest nesting of nodes
 
 Imath::M44d local_matrix(const JsonCursor& node) {
   if (const auto matrix = node.find("matrix")) {

@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/json_file.h"
 #include "render/json_parts.h"
 
@@ -10,7 +10,6 @@ namespace psf::render {
 namespace {
 
 constexpr float kRadians = std::numbers::pi_v<float> / 180;
-constexpr std::uint32_t kMaxSide = 65536;  // pixels
 
 Camera read_camera(const JsonCursor& json, const Space& space) {
   json.check_keys({"name", "eye", "target", "up", "fov", "size", "lens_radius", "focus_distance"});

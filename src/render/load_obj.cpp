@@ -6,7 +6,7 @@
 #include <set>
 #include <unordered_map>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/load_parts.h"
 #include "render/mtl.h"
 #include "render/obj_file.h"
@@ -132,7 +132,7 @@ class ObjLoad {
     return materials_[part.material] = plain_material();
   }
 
-  // Of faces without a material.
+  // The material of faces that have none.
   int plain_material() {
     if (plain_ == kNone) {
       Material plain;

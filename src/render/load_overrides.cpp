@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/load_parts.h"
 
 namespace psf::render {
@@ -68,9 +68,9 @@ void override_cameras(const SceneOverrides& o, Scene& scene) {
   }
   if (o.size) {
     for (const float side : {o.size->x, o.size->y}) {
-      if (!(side >= 1 && side <= 65536) || side != std::floor(side)) {
-        misuse(fmt::format("--size {}x{}: expected whole numbers of pixels, at least 1x1",
-                           o.size->x, o.size->y));
+      if (!(side >= 1 && side <= kMaxSide) || side != std::floor(side)) {
+        misuse(fmt::format("--size {}x{}: expected whole numbers of pixels from 1 to {}", o.size->x,
+                           o.size->y, kMaxSide));
       }
     }
   }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/load_parts.h"
 
 namespace psf::render {
@@ -14,10 +14,11 @@ namespace {
 // A scene as far from the origin as this many times its size is moved: farther, its coordinates
 // lose more than 6 of their 24 bits.
 constexpr double kFar = 64;
-// Sizes, as exponents of two, at which products of lengths are floats with room on both sides; most
-// of the room is below, for what is small in a large scene.
+// The sizes of scenes, as exponents of two, at which products of lengths fit in floats with room on
+// both sides. Most of the room is below, for small parts of a large scene.
 constexpr int kSmall = -10, kLarge = 20, kMiddle = 10;
-// World units that a dump's floats have: distances between parts of a scene, sums of them.
+// The range of world units in which a dump's floats can hold distances between parts of a scene,
+// and sums of these.
 constexpr double kLargestWorld = 1e36, kSmallestWorld = 1e-30;
 // Doubles, as in the files, have 53 bits: so many times its size from the origin, a scene keeps 13.
 constexpr double kFarthest = 0x1p40;
@@ -44,7 +45,8 @@ double largest(const Imath::V3d& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-// Of all triangles and spheres; what is not finite, or names no vertex, is found later.
+// The bounds of all triangles and spheres. Values that are not finite, and indices of no vertex,
+// are reported later.
 Imath::Box3d bounds_of(const Scene& scene) {
   Imath::Box3d box;
   for (const Mesh& mesh : scene.meshes) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/load_parts.h"
 
 namespace psf::render {
@@ -17,9 +17,9 @@ using Imath::V3d;
 // Where a ray meets a triangle is known to some 2^-19 of the triangle's size (kOffsetScale): for
 // one that is longer than so many times its distance from the camera, to 1% of that distance.
 constexpr double kTooLong = 4096;
-constexpr int kMostCuts = 64;  // of one triangle within another
-// Of a sphere's surface, floats know some 2^-18 of its radius: of one that is so many times a
-// camera's distance from it, 3% of that distance.
+constexpr int kMostCuts = 64;  // deepest nesting of cuts of a triangle
+// Floats give a sphere's surface to about 2^-18 of its radius. For a radius of kTooRound times the
+// distance of a camera, that is 3% of the distance.
 constexpr double kTooRound = 0x1p13;
 
 double distance_to_segment(const V3d& p, const V3d& a, const V3d& b) {
@@ -55,7 +55,8 @@ class Splitter {
   }
 
  private:
-  // Of its ends alone, so that both triangles at an edge decide alike and no gap opens.
+  // Whether an edge is to be cut. It depends on the edge's ends alone, so that both triangles at
+  // the edge decide alike and no gap opens.
   [[nodiscard]] bool is_long(std::uint32_t i, std::uint32_t j) const {
     const V3d a(mesh_.positions[i]), b(mesh_.positions[j]);
     const double length = (b - a).length();

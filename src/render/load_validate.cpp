@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/load_parts.h"
 
 namespace psf::render {

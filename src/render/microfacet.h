@@ -5,8 +5,8 @@
 
 namespace psf::render {
 
-// Unpolarised reflectance of a smooth dielectric. `cosine` >= 0 of the arriving direction, `eta`:
-// index behind the surface over index in front of it. 1 under total internal reflection.
+// Unpolarised reflectance of a smooth dielectric; 1 under total internal reflection. `cosine` >= 0
+// is that of the arriving direction; `eta` is the index behind the surface over the index in front.
 [[nodiscard]] inline float fresnel_dielectric(float cosine, float eta) {
   const float sin_t_sq = (1 - cosine * cosine) / (eta * eta);
   if (sin_t_sq >= 1) return 1;
@@ -16,16 +16,17 @@ namespace psf::render {
   return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
-// Schlick 1994.
+// Schlick's approximation (1994) of the reflectance, with `f0` at normal incidence.
 [[nodiscard]] inline Rgb fresnel_schlick(const Rgb& f0, float cosine) {
   const float x = std::clamp(1 - cosine, 0.0f, 1.0f), x_sq = x * x;
   return f0 + (Rgb(1, 1, 1) - f0) * (x_sq * x_sq * x);
 }
 
-// Smoother than this is a perfect mirror: single precision cannot resolve the lobe.
+// A surface with a smaller alpha is a perfect mirror, because single precision cannot resolve the
+// lobe.
 constexpr float kLeastAlpha = 1e-3f;
 
-// Isotropic GGX with Smith's height-correlated shadowing (Heitz 2014); all z > 0.
+// Isotropic GGX with Smith's height-correlated shadowing (Heitz 2014); all directions have z > 0.
 struct Ggx {
   float alpha_sq;
 
@@ -41,8 +42,9 @@ struct Ggx {
   [[nodiscard]] float g2(const Vec3& o, const Vec3& i) const {
     return 1 / (1 + lambda(o) + lambda(i));
   }
-  // A normal visible from `o`, by Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with
-  // Spherical Caps". The density of its reflection is d(h) g1(o) / (4 o.z).
+  // Samples a normal h that is visible from `o`, by Dupuy and Benyoub 2023, "Sampling Visible GGX
+  // Normals with Spherical Caps". The density of the direction reflected at h is d(h) g1(o) / (4
+  // o.z).
   [[nodiscard]] Vec3 sample(const Vec3& o, const Vec2& u) const {
     const float alpha = std::sqrt(alpha_sq);
     const Vec3 v = normalize(Vec3(alpha * o.x, alpha * o.y, o.z));

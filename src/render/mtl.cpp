@@ -98,7 +98,7 @@ class MtlReader {
                std::end(kLackedNumbers)) {
       if (read_number(-kAny, kAny) != 0) left_out_.add(lines_.statement());
     } else if (statement == "sharpness") {
-      (void)read_number(0, kAny);  // of reflection maps, which are left out by their own names
+      (void)read_number(0, kAny);        // belongs to reflection maps, which are left out by name
     } else if (statement != "map_ka") {  // light is simulated, no share of it is ambient
       left_out_.add_statement(lines_.statement());
     }

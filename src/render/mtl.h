@@ -1,4 +1,4 @@
-// Material libraries (MTL) of OBJ files: what they say, and what becomes of it.
+// Material libraries (MTL) of OBJ files: reads them, and turns their materials into psf's.
 #pragma once
 
 #include <cstddef>
@@ -12,27 +12,29 @@ namespace psf::render {
 
 class LeftOut;
 
-// What one material says; nothing where it does not. Colours are linear Rec. 709, those of
-// reflection and transmission in [0, 1].
+// The statements of one material; values that it does not give are not set. Colours are linear Rec.
+// 709; those of reflection and transmission are in [0, 1].
 struct MtlMaterial {
   std::string name;
-  std::size_t line = 0;  // of its newmtl
+  std::size_t line = 0;  // line of its newmtl statement
   std::optional<Rgb> ka, kd, ks, tf, ke;
-  std::optional<float> d, tr;  // opacity, and transparency instead
+  std::optional<float> d, tr;  // opacity; transparency, given in place of opacity
   std::optional<float> ns, ni, pr, pm;
   std::optional<int> illum;
   struct Map {
-    std::string file;      // empty for none
-    std::size_t line = 0;  // where it is named
+    std::string file;      // empty: no map
+    std::size_t line = 0;  // line of the statement
   };
   Map map_kd, map_ke;
 };
 
-// Every statement of a library, its numbers checked where they stand; what becomes nothing is added
-// to `left_out`. Throws Error{bad_input} naming file and line, Error{io} where it cannot be read.
+// Reads every statement of a library and checks its numbers. Statements without effect are added to
+// `left_out`. Throws Error{bad_input} naming file and line, Error{io} where the file cannot be
+// read.
 [[nodiscard]] std::vector<MtlMaterial> read_mtl(const std::string& path, LeftOut& left_out);
 
-// Our material, as sample_data/README.md has it. `path`: of the library, for the maps.
+// Converts to psf's material as described in sample_data/README.md. `path`: the library's path,
+// which the paths of maps are relative to.
 [[nodiscard]] Material to_material(const MtlMaterial& mtl, const std::string& path,
                                    TextureTable& textures, LeftOut& left_out);
 

@@ -9,7 +9,7 @@
 #include <map>
 #include <utility>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/text_lines.h"
 
 namespace psf::render {
@@ -182,7 +182,7 @@ class ObjReader {
   std::string object_, material_;
   std::size_t object_number_ = 0;
   std::map<std::pair<std::size_t, std::string>, std::size_t> part_of_;  // object and material
-  const std::size_t* part_ = nullptr;  // of the next face, null where it is to be looked up
+  const std::size_t* part_ = nullptr;  // part of the next face; null: still to be looked up
   float weight_ = 1;
   bool smooth_ = false;
 };

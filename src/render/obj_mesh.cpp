@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "formats/error.h"
+#include "core/error.h"
 
 namespace psf::render {
 

@@ -1,4 +1,4 @@
-// Parts of an OBJ file to meshes of triangles.
+// Turns the parts of an OBJ file into triangle meshes.
 #pragma once
 
 #include <string>
@@ -11,17 +11,17 @@ namespace psf::render {
 
 class ObjMeshes {
  public:
-  // Both must outlive it.
+  // Both arguments must outlive this object.
   ObjMeshes(const std::string& path, const ObjFile& file);
 
-  // Corners that agree in all share a vertex; normals are there where every corner has one. Name
-  // and material stay empty.
+  // Makes the mesh of a part, without name and material. Corners with equal position, uv and normal
+  // share a vertex. The mesh has normals where every corner has one.
   [[nodiscard]] Mesh make(const ObjPart& part);
-  // One warning for each kind of odd face that came up.
+  // Adds one warning to the scene for each kind of odd face that was found.
   void warn(Scene& scene) const;
 
  private:
-  // Faces of some kind.
+  // The odd faces of one kind.
   struct Odd {
     std::size_t count = 0, first_line = 0;
     void add(const ObjFace& face) {
@@ -36,10 +36,10 @@ class ObjMeshes {
   const std::string& path_;
   const ObjFile& file_;
   PolygonCutter cutter_;
-  std::vector<std::uint32_t> newest_;  // by position, of the mesh's vertices there
-  std::vector<std::uint32_t> older_;   // by vertex, the one before it at its position
+  std::vector<std::uint32_t> newest_;  // by position: the newest vertex at this position
+  std::vector<std::uint32_t> older_;   // by vertex: the vertex before it at the same position
   std::vector<ObjCorner> corners_;     // by vertex
-  std::vector<Vec3> points_;           // of one face
+  std::vector<Vec3> points_;           // corners of one face
   std::vector<std::uint32_t> vertices_;
   bool all_normals_ = true, any_uv_ = false;
   Odd repeating_, crossing_;

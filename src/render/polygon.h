@@ -1,5 +1,5 @@
-// Cuts faces of any number of corners into triangles, by GLU's tessellator: it is right for concave
-// faces and those with a hole cut open, and finds where a face crosses itself.
+// Cuts faces of any number of corners into triangles, by GLU's tessellator. It handles concave
+// faces and faces whose hole is cut open, and finds the points where a face crosses itself.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace psf::render {
 struct Crossing {
   Vec3 position;
   std::array<std::uint32_t, 4> corners{};
-  std::array<float, 4> weights{};  // 0 for those that do not count
+  std::array<float, 4> weights{};  // 0 for unused corners
 };
 
 class PolygonCutter {
@@ -28,19 +28,19 @@ class PolygonCutter {
   PolygonCutter(const PolygonCutter&) = delete;
   PolygonCutter& operator=(const PolygonCutter&) = delete;
 
-  // `points`: at least three corners in order, finite, in a plane or near one. The triangles are
-  // wound as the face is and cover what it goes around (nonzero winding). A corner that is where
-  // the one before it is does not count; a face with fewer than three others becomes one triangle
-  // without area. False where it crosses itself more than twice
-  // for each corner.
+  // Cuts a face. `points`: at least three corners in order, finite, in a plane or near one. The
+  // triangles have the winding of the face and cover the area that it encloses (nonzero winding). A
+  // corner at the position of the one before it is skipped; a face with fewer than three other
+  // corners becomes one triangle without area. Returns false where the face crosses itself more
+  // than twice for each corner.
   [[nodiscard]] bool cut(std::span<const Vec3> points);
 
-  // Numbers below points.size() are corners, the others, less that, crossings.
+  // A number k below points.size() is corner k; any other is crossing k - points.size().
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& triangles() const {
     return triangles_;
   }
   [[nodiscard]] const std::vector<Crossing>& crossings() const { return crossings_; }
-  [[nodiscard]] bool repeats() const { return repeats_; }  // a corner did not count
+  [[nodiscard]] bool repeats() const { return repeats_; }  // a corner was skipped
 
  private:
   struct Callbacks;
@@ -53,8 +53,8 @@ class PolygonCutter {
 
   std::unique_ptr<GLUtesselator, Delete> tess_;
   std::span<const Vec3> points_;
-  std::vector<std::uint32_t> ring_;   // the corners that count
-  std::vector<std::uint32_t> loose_;  // corners of the triangle that is not whole yet
+  std::vector<std::uint32_t> ring_;   // the corners that were not skipped
+  std::vector<std::uint32_t> loose_;  // corners of the unfinished triangle
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::vector<Crossing> crossings_;
   bool repeats_ = false, failed_ = false;

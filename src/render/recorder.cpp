@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "formats/reader.h"
 
 namespace psf::render {

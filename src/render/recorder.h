@@ -1,4 +1,4 @@
-// The records of one slab of paths as the columns of the path-vertex buffer.
+// Keeps the records of one slab of paths as columns of the path-vertex buffer.
 #pragma once
 
 #include <cstddef>
@@ -17,9 +17,9 @@ namespace psf::render {
 constexpr std::uint8_t kHasVertexFlag = 1;  // bits of the channel `flags`
 constexpr std::uint8_t kShadedFlag = 2;
 
-// The channels to write: those that the format requires and `flags` and `unfiltered`, without which
-// pictures cannot be made, then of the rest those in `optional`; empty: all. In the format's order.
-// Throws Error{usage} naming an unknown channel and those there are.
+// The channels to write, in the format's order: those that the format requires; `flags` and
+// `unfiltered`, without which pictures cannot be made; and of the others those in `optional`, or
+// all where it is empty. Throws Error{usage} that names an unknown channel and the known ones.
 [[nodiscard]] std::vector<formats::Channel> record_channels(
     std::span<const std::string> optional = {});
 
@@ -30,17 +30,18 @@ class Recorder {
   // Sets record `slot` < capacity. Different slots may be set from different threads at once.
   void set(std::size_t slot, std::uint16_t camera, std::uint32_t pixel, const PathRecord& record);
 
-  // For each channel its first value, as formats::Writer::append wants it. `channels`: of
-  // record_channels(). Valid while the recorder lives.
+  // The address of the first value of each channel, for formats::Writer::append(). `channels` are
+  // from record_channels(). Valid as long as the recorder exists.
   [[nodiscard]] std::vector<const void*> columns(std::span<const formats::Channel> channels) const;
 
-  // Sets the first `count` slots, as far as add_to() needs them, to records of a dump that has
-  // record_channels(), from `first` on. Throws what the reader throws.
+  // Sets the first `count` slots to the records from `first` on of a dump with record_channels(),
+  // but only the channels that add_to() needs. Throws what the reader throws.
   void load(const formats::Reader& reader, std::uint64_t first, std::size_t count);
 
-  // Adds u + alpha * c of the first `count` records, in order; where one path in `shade_rate` > 1
-  // is shaded, of those that have the flag, with a vertex or without: of what meets no surface no
-  // more is to count than of what does. Non-finite values are left out; returns how many.
+  // Adds u + alpha c of the first `count` records to `film`, in order. With `shade_rate` > 1 only
+  // records with the flag for shaded paths are added, with or without a vertex, so that paths that
+  // meet no surface do not weigh more than others. Values that are not finite are left out; returns
+  // their number.
   std::uint64_t add_to(film::Film& film, std::size_t count, std::uint32_t shade_rate) const;
 
  private:

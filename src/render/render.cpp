@@ -83,7 +83,7 @@ class Loop {
   std::uint64_t paths_a_pass_ = 0;
   std::uint64_t paths_done_ = 0;
   std::atomic<std::uint64_t> rays_{0};
-  double seconds_before_ = 0;  // of the runs before this one
+  double seconds_before_ = 0;  // time of the runs before this one
   Clock::time_point start_ = Clock::now();
   core::Progress* progress_ = nullptr;
   RenderResult result_;
@@ -236,7 +236,7 @@ void Loop::wait_for_output() {
   result_.output_seconds += seconds_since(start);
 }
 
-// Of the paths traced so far; the caller fills in what the output alone knows.
+// The state after the paths traced so far; the caller sets the number of non-finite paths.
 Done Loop::done_now() const {
   return {paths_done_ / paths_a_pass_, rays_, 0, seconds_before_ + seconds_since(start_)};
 }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "formats/layout.h"
 #include "formats/metadata.h"
 #include "render/camera.h"

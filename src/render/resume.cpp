@@ -5,15 +5,15 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/error.h"
 #include "core/json_text.h"
-#include "formats/error.h"
 
 namespace psf::render {
 namespace {
 
 using Json = nlohmann::json;
 
-// Of a setting that shapes the paths and that the metadata do not tell.
+// The settings that shape the paths and are not in the metadata.
 Json unlisted_settings(const RenderSettings& settings) {
   const IntegratorSettings& integrator = settings.integrator;
   Json state{{"shade_rate", settings.shade_rate},

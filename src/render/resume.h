@@ -1,4 +1,5 @@
-// Going on with a dump that was stopped: what each commit keeps for it, and what must be the same.
+// Resuming a dump that was stopped: the state that each commit keeps, and the check that the
+// settings are the same.
 #pragma once
 
 #include <cstdint>
@@ -10,19 +11,19 @@
 
 namespace psf::render {
 
-// What the loop had done by a commit.
+// The work that the loop had done by a commit.
 struct Done {
   std::uint64_t passes = 0, rays = 0;
   std::uint64_t non_finite = 0;  // paths left out of the pictures
   double seconds = 0;
 };
 
-// For formats::Writer::commit().
+// The resume state for formats::Writer::commit().
 [[nodiscard]] std::string resume_state(const Done& done, const RenderSettings& settings);
 
-// Of a file that formats::Writer::resume() opened; `head`: what make_head() gives now. Throws
-// Error{bad_input} naming the first setting under which the file was rendered otherwise, or what
-// the file lacks to be continued.
+// Reads the resume state of a file that formats::Writer::resume() opened. `head` is the present
+// result of make_head(). Throws Error{bad_input} that names the first setting that differs from the
+// file's, or what the file lacks to be continued.
 [[nodiscard]] Done resume_point(const formats::Writer& writer, const formats::Head& head,
                                 const RenderSettings& settings, std::uint64_t paths_a_pass);
 

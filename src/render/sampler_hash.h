@@ -28,8 +28,9 @@ constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;  // 2^64 / golden ratio, 
   return ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
 }
 
-// Nested uniform scrambling of a fraction whose bits are reversed (bit 0 weighs 1/2): each bit is
-// flipped by a hash of the bits below it, since sums and products carry upward only. After S. Laine
+// Nested uniform scrambling of a fraction whose bits are reversed, so that bit 0 weighs 1/2. Each
+// bit is flipped by a hash of the bits below it, since sums and products carry upward only. After
+// S. Laine
 // and T. Karras 2011, B. Burley 2020 ("Practical hash-based Owen scrambling"), with the constants
 // of N. Vegdahl 2021, which come closer to true Owen scrambling.
 [[nodiscard]] constexpr std::uint32_t owen_scramble_reversed(std::uint32_t x, std::uint32_t key) {

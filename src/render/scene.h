@@ -1,4 +1,4 @@
-// What a scene is once loaded: plain data that the loaders fill and the light transport reads.
+// A loaded scene: plain data that the loaders fill and the light transport reads.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ struct Material {
   MaterialKind kind = MaterialKind::diffuse;
   Rgb reflectance{0.5f, 0.5f, 0.5f};
   int reflectance_texture = kNone;  // multiplies reflectance
-  Rgb specular{0, 0, 0};            // of gloss
+  Rgb specular{0, 0, 0};            // reflectance of gloss at normal incidence
   float roughness = 0.5f;           // perceptual: GGX alpha = roughness^2
   float metalness = 0;
   int roughness_metalness_texture = kNone;  // glTF: G multiplies roughness, B multiplies metalness
@@ -44,8 +44,8 @@ struct Material {
 struct Mesh {
   std::string name;
   std::vector<Vec3> positions;
-  std::vector<Vec3> normals;  // empty, or unit, one a position
-  std::vector<Vec2> uvs;      // empty, or one a position
+  std::vector<Vec3> normals;  // empty, or one unit vector per position
+  std::vector<Vec2> uvs;      // empty, or one per position
   std::vector<std::array<std::uint32_t, 3>> triangles;
   int material = 0;
 };
@@ -59,16 +59,16 @@ struct Sphere {
 
 enum class LightKind : std::uint8_t { point, directional, spot };
 
-// Lights without surface. Those with one are the emissive meshes and spheres.
+// A light without surface. Lights with a surface are the emissive meshes and spheres.
 struct Light {
   std::string name;
   LightKind kind = LightKind::point;
-  Vec3 position{0, 0, 0};    // point, spot; Vec3() would leave it to chance, and the hash with it
-  Vec3 direction{0, 0, -1};  // unit, in which the light travels: directional, spot
+  Vec3 position{0, 0, 0};    // point, spot; Vec3() would leave it, and the hash, undefined
+  Vec3 direction{0, 0, -1};  // directional, spot: unit, the direction in which light travels
   // point, spot: radiant intensity, in the scene's unit of length; directional: irradiance on a
   // facing surface
   Rgb intensity{1, 1, 1};
-  float cos_inner = 1, cos_outer = 0;  // spot: full inside, smooth falloff to 0 at outer
+  float cos_inner = 1, cos_outer = 0;  // spot: full within inner, smooth falloff to 0 at outer
   float angle = 0;  // directional: angular radius in radians, 0 for a point at infinity
 };
 
@@ -78,6 +78,9 @@ struct Environment {
   int texture = kNone;  // latitude-longitude; +y is up, the centre of the map looks along -z
   float rotation = 0;   // radians about +y
 };
+
+// Most pixels of a side of a picture, so that the number of a pixel fits 32 bits.
+inline constexpr std::uint32_t kMaxSide = 65535;
 
 struct Camera {
   std::string name;
@@ -89,8 +92,8 @@ struct Camera {
   float focus_distance = 1;  // along the view axis, used where lens_radius > 0
 };
 
-// All coordinates and lengths are those of `space`, which is the world but for scenes that are far
-// from its origin, huge or tiny.
+// All coordinates and lengths are those of `space`, which is the world except for scenes that are
+// far from the world's origin, huge or tiny.
 struct Scene {
   std::string name;  // file name without folder
   std::string hash;  // hexadecimal, over everything that shapes the picture (files and command-line
@@ -102,10 +105,10 @@ struct Scene {
   std::vector<Light> lights;
   Environment environment;
   std::vector<Camera> cameras;
-  std::vector<std::string> files;     // read beside the scene file, some of them more than once
+  std::vector<std::string> files;     // other files that were read; some may occur more than once
   std::vector<std::string> warnings;  // what was repaired or left out while loading, one line each
   Space space;
-  Space wanted;  // where exact: what a loader found that the scene must be loaded in instead
+  Space wanted;  // where `exact` is set: the space in which the scene must be loaded instead
 };
 
 }  // namespace psf::render

@@ -1,13 +1,14 @@
-// Which paths are shaded when one in K is: a lattice over the pixels that moves from pass to pass.
+// Chooses the paths to shade where one in K is shaded: a lattice over the pixels that moves from
+// pass to pass.
 #pragma once
 
 #include <cstdint>
 
 namespace psf::render {
 
-// Path of pixel (x, y) in a pass is shaded where x + b y + c pass = 0 (mod K). Any K neighbours in
-// a row hold one shaded path, any K passes shade each pixel once, b makes the shaded pixels of a
-// pass lie as far apart as a lattice can, c sends consecutive passes to distant residues.
+// The path of pixel (x, y) in a pass is shaded where x + b y + c pass = 0 (mod K). Any K neighbours
+// in a row hold one shaded path, and any K passes shade each pixel once. b puts the shaded pixels
+// of a pass as far apart as a lattice can, and c sends consecutive passes to distant residues.
 class ShadeRate {
  public:
   explicit ShadeRate(std::uint32_t k);  // 1 to 65536

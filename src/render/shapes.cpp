@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "formats/error.h"
+#include "core/error.h"
 
 namespace psf::render {
 namespace {

@@ -10,8 +10,9 @@ namespace psf::render {
 constexpr std::uint32_t kSobolDimensions = 128;
 constexpr int kSobolIndexBits = 48;  // bits of the index above these are ignored
 
-// Of dimension d + 1 (dimension 0 is the van der Corput sequence and needs none): the primitive
-// polynomial, bit k the coefficient of z^k, and the initial odd numbers m, as many as its degree.
+// The numbers that define dimension d + 1, at index d of kSobolNumbers; dimension 0 is the van der
+// Corput sequence and needs none. Bit k of `polynomial` is the coefficient of z^k of a primitive
+// polynomial; `m` holds the initial odd numbers, as many as its degree.
 struct SobolNumbers {
   std::uint16_t polynomial;
   std::uint16_t m[10];
@@ -26,8 +27,8 @@ struct SobolTables {
 };
 extern const SobolTables kSobolTables;
 
-// Coordinate of point `index`, bits reversed (bit 0 weighs 1/2), so that scrambling can follow at
-// once. dimension < kSobolDimensions, index < 2^kSobolIndexBits.
+// The coordinate of point `index`, with reversed bits (bit 0 weighs 1/2), as scrambling needs it.
+// dimension < kSobolDimensions, index < 2^kSobolIndexBits.
 [[nodiscard]] inline std::uint32_t sobol_reversed(std::uint64_t index, std::uint32_t dimension) {
   const auto* row = kSobolTables.sums[dimension];
   std::uint32_t bits = 0;
@@ -35,9 +36,9 @@ extern const SobolTables kSobolTables;
   return bits;
 }
 
-// The same of dimension 1, without a table: its matrix is Pascal's triangle modulo 2, where entry
-// (i, j) is 1 if the bits of i are among those of j. That is a Kronecker power of [1 1; 0 1],
-// applied bit by bit.
+// The same for dimension 1, without a table. The generator matrix is Pascal's triangle modulo 2,
+// where entry (i, j) is 1 if the bits of i are among those of j. It is a Kronecker power of [1 1; 0
+// 1], which is applied bit by bit.
 [[nodiscard]] constexpr std::uint32_t sobol_reversed_1(std::uint32_t index) {
   index ^= (index >> 16) & 0x0000ffffu;
   index ^= (index >> 8) & 0x00ff00ffu;

@@ -1,19 +1,19 @@
-// Where the coordinates of a scene lie in the world.
+// The coordinate system of a scene and its place in the world.
 #pragma once
 
 #include "core/vec.h"
 
 namespace psf::render {
 
-// Floats have 24 bits: a scene far from the origin would lose those that tell its parts apart, and
-// squares of what is huge or tiny are no floats. So such a scene is loaded around a place of its
-// own and in a unit of its own, a power of two of the world's. Cameras see the same pictures as
-// ever, and a dump has world units again. An ordinary scene's space is the world.
+// Floats have 24 bits. In a scene far from the origin they could not tell the scene's parts apart,
+// and the squares of huge or tiny lengths do not fit in floats. So such a scene is loaded around an
+// origin of its own and in a unit of its own, the world's unit times a power of two. Pictures are
+// the same, and a dump is in world units. The space of an ordinary scene is the world.
 struct Space {
-  Imath::V3d origin{0, 0, 0};  // in the world
-  int exponent = 0;            // a length of 1 here is 2^exponent in the world
-  // Loaders place everything in double and round once. Otherwise they calculate in float, as they
-  // may where the space is the world.
+  Imath::V3d origin{0, 0, 0};  // in world coordinates
+  int exponent = 0;            // a length of 1 in this space is 2^exponent in the world
+  // Whether loaders compute places in double and round once. Otherwise they compute in float, which
+  // is enough where the space is the world.
   bool exact = false;
 
   bool operator==(const Space&) const = default;
@@ -30,7 +30,7 @@ struct Space {
   }
   [[nodiscard]] float world_length(float local) const { return std::ldexp(local, exponent); }
 
-  // Of row vectors, p * m.
+  // The matrices are for row vectors, p * m.
   [[nodiscard]] Imath::M44d to_local() const {
     Imath::M44d m;
     m.setTranslation(Imath::V3d(0, 0, 0) - origin);  // no -0, which would change bytes

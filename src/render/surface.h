@@ -1,4 +1,4 @@
-// What a ray found: the point on the surface with all that shading asks.
+// The point where a ray met a surface, with everything that shading needs.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,20 @@ struct Surface {
   Vec3 position;
   Vec3 geometric_normal;  // unit, on the side that the ray came from
   Vec3 normal;   // unit shading normal on that side, never facing away from the ray's origin
-  Vec2 uv;       // of the mesh, else barycentric; spheres: longitude and latitude, +y up
-  float offset;  // how far rays start from the surface, world units
+  Vec2 uv;       // the mesh's, else barycentric; spheres: longitude and latitude, +y up
+  float offset;  // distance from the surface at which rays start, in the unit of the scene's space
   int material;  // index in Scene::materials
-  int emitter;   // index of its light, kNone for none
+  int emitter;   // number of its light; kNone: it emits nothing
   bool front;    // the ray met the front side
 
-  // Where a ray toward `direction` starts, so that it does not meet its own surface again.
+  // The origin of a ray toward `direction`, such that the ray does not meet this surface again.
   [[nodiscard]] Vec3 origin_toward(const Vec3& direction) const {
     return position + geometric_normal * (dot(direction, geometric_normal) > 0 ? offset : -offset);
   }
 };
 
 // Rounding moves a point on a surface by some units in the last place of the largest coordinate
-// that took part in computing it; rays start this much times that coordinate away.
+// used to compute it. Rays start at kOffsetScale times this coordinate from the surface.
 constexpr float kOffsetScale = 0x1p-19f;
 
 [[nodiscard]] inline float max_abs(const Vec3& v) {
@@ -41,10 +41,11 @@ constexpr float kOffsetScale = 0x1p-19f;
 // Turns hits into surfaces.
 class Shapes {
  public:
-  // The scene must outlive it. Nothing emits until set_..._emitter() says so.
+  // The scene must outlive this object. No surface emits until set_mesh_emitter() or
+  // set_sphere_emitter() is called for it.
   explicit Shapes(const Scene& scene);
 
-  // `direction`: of the ray that hit, unit.
+  // `direction`: unit direction of the ray.
   [[nodiscard]] Surface surface(const Hit& hit, const Vec3& direction) const;
 
   void set_mesh_emitter(std::size_t mesh, int light) { meshes_[mesh].emitter = light; }
@@ -53,8 +54,8 @@ class Shapes {
  private:
   struct MeshView {
     const Vec3* positions;
-    const Vec3* normals;  // null for none
-    const Vec2* uvs;      // null for none
+    const Vec3* normals;  // null: the mesh has none
+    const Vec2* uvs;      // null: the mesh has none
     const std::array<std::uint32_t, 3>* triangles;
     int material, emitter;
   };

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/load_parts.h"
 #include "render/whole_file.h"
 

@@ -4,14 +4,14 @@
 
 #include <algorithm>
 
-#include "formats/error.h"
+#include "core/error.h"
 
 namespace psf::render {
 namespace {
 
 struct Wrapped {
   std::size_t first, second;
-  float weight;  // of second
+  float weight;  // weight of `second`
 };
 
 // The two texels around `coordinate`, whose picture repeats after 1 and has `size` texels.

@@ -14,35 +14,35 @@
 
 namespace psf::render {
 
-// What the values of a picture are for, and so what they may be. Colours of integer files are sRGB
-// unless the file says otherwise, those of float files are linear.
+// The use of a picture, which decides the values that it may have. Colours of integer files are
+// sRGB unless the file says otherwise; those of float files are linear.
 enum class TextureUse {
   reflectance,  // colours in [0, 1]
   numbers,      // as stored, in [0, 1]
-  radiance      // colours of at least 0; premultiplied ones stay so, as light is
+  radiance      // colours of at least 0; premultiplied colours stay premultiplied
 };
 
-// 8-bit files stay 8-bit in memory (4 bytes a texel) and are made linear by a table at each lookup;
-// all else is 32-bit float.
+// 8-bit files stay 8-bit in memory (4 bytes per texel); each lookup makes them linear by a table.
+// All other files become 32-bit float.
 class Texture {
  public:
   // (height, width) colours, row 0 at v = 1 (the top of the picture).
   Texture(std::size_t width, std::size_t height, std::vector<Rgb> texels);
 
-  // What a file says of its pixels counts: orientation, gamma, chromaticities, the display window
-  // (black around the data), premultiplied alpha; but with `plain` its colours are sRGB whatever it
-  // says, as glTF wants. Alpha itself is ignored, grey becomes RGB. Values out of range are
-  // clamped, which `notes` tells in one line, as it tells what of the file is left out; each starts
-  // with the name. Throws Error{io} where the file is missing, Error{bad_input} where it is no
-  // picture, a cube map, logarithmic or not finite, Error{limit} where it has more than 2^28
-  // texels; all name the file.
+  // Loads a picture file. It honours the file's orientation, gamma, chromaticities, display window
+  // (black around the data) and premultiplied alpha; with `plain` colours are sRGB whatever the
+  // file says, as glTF demands. Alpha itself is ignored, and grey becomes RGB. Values out of range
+  // are clamped. `notes` gets a line about that, and lines about what else of the file is left out;
+  // each starts with the file's name. Throws Error{io} where the file is missing, Error{bad_input}
+  // where it is no picture, a cube map, logarithmic or not finite, Error{limit} where it has more
+  // than 2^28 texels; all errors name the file.
   static Texture load(const std::string& path, TextureUse use, std::vector<std::string>& notes,
                       bool plain = false);
-  // The same from the bytes of a picture file; `name` says in errors where they come from.
+  // The same for the bytes of a picture file; messages call them `name`.
   static Texture decode(std::span<const unsigned char> bytes, const std::string& name,
                         TextureUse use, std::vector<std::string>& notes, bool plain = false);
-  // Why there is no reader for the picture of this path or, where there are any, of these bytes;
-  // empty where there is one.
+  // The reason why no reader is available for the picture `path`, or for `bytes` where they are
+  // given; empty where there is a reader.
   static std::string why_unreadable(const std::string& path,
                                     std::span<const unsigned char> bytes = {});
 
@@ -63,12 +63,12 @@ class Texture {
                       std::vector<std::string>& notes, bool plain);
 
   std::size_t width_, height_;
-  std::vector<std::uint32_t> packed_;   // red in the low byte, or empty
-  std::shared_ptr<const Table> table_;  // of packed_: value of a byte
-  std::vector<Rgb> texels_;             // or empty
+  std::vector<std::uint32_t> packed_;   // 8-bit texels, red in the low byte; or empty
+  std::shared_ptr<const Table> table_;  // the linear value of a byte of packed_
+  std::vector<Rgb> texels_;             // float texels; empty where packed_ is not
 };
 
-// The sRGB transfer curve of IEC 61966-2-1, encoded to linear, both in [0, 1].
+// The sRGB transfer function of IEC 61966-2-1, from encoded to linear, both in [0, 1].
 [[nodiscard]] inline float srgb_to_linear(float encoded) {
   return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }

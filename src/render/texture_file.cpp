@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/error.h"
 #include "core/lower.h"
-#include "formats/error.h"
 
 namespace psf::render {
 namespace {

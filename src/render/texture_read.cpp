@@ -11,7 +11,7 @@
 #include <memory>
 #include <string_view>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/texture.h"
 #include "render/texture_file.h"
 
@@ -236,7 +236,7 @@ Texture Texture::read(const std::string& name, std::span<const unsigned char> by
 
 namespace {
 
-png_error_ptr said = nullptr;  // of whoever set one last
+png_error_ptr said = nullptr;  // the error handler that was set last
 
 [[noreturn]] void end_reading(png_structp png, png_const_charp text) {
   said(png, text);

@@ -1,4 +1,4 @@
-// What all integrators share: the scene ready for rays, and one vertex of a path.
+// The common parts of all integrators: the scene prepared for rays, and the steps of a path.
 #pragma once
 
 #include <memory>
@@ -13,22 +13,21 @@
 
 namespace psf::render {
 
-// One surface interaction: where, how it scatters, and the direction toward where the path came
-// from.
+// One surface interaction: the surface, its scattering, and the direction to the previous vertex.
 struct Vertex {
   Surface surface;
   Bsdf bsdf;
   Frame frame;
   Vec3 out;    // toward the previous vertex, unit
-  Vec3 local;  // the same in the frame
+  Vec3 local;  // `out` in the frame
 };
 
-// The end of a path that still travels.
+// The state of a path that is being traced.
 struct Walk {
   Ray ray;
   Rgb throughput{1, 1, 1};
-  float eta_scale = 1;       // what glass took from the throughput only to give it back on leaving
-  float pdf = 0;             // of ray.direction by scattering; 0 for perfect lobes and the camera
+  float eta_scale = 1;       // change of the throughput by glass that is undone on leaving it
+  float pdf = 0;             // density of ray.direction; 0 for perfect lobes and the camera
   bool every_light = false;  // the last vertex sampled every light
   Vec3 from{0, 0, 0};        // the last vertex
   int depth = 0;             // surface interactions so far
@@ -36,7 +35,8 @@ struct Walk {
 
 class Transport {
  public:
-  // At most this many lights are all sampled at x_i; visibility bits are light mod this.
+  // Where there are at most this many lights, all are sampled at x_i. Light l has the visibility
+  // bit l mod kEveryLight.
   static constexpr std::size_t kEveryLight = 32;
 
   Transport(const Scene& scene, const IntegratorSettings& settings);
@@ -46,21 +46,22 @@ class Transport {
   [[nodiscard]] const Lights& lights() const { return lights_; }
   [[nodiscard]] bool samples_every_light() const { return lights_.count() <= kEveryLight; }
 
-  // Follows the walk's ray to the next surface and returns its length; infinity for a miss.
+  // Follows the walk's ray to the next surface and returns the distance; infinity for a miss.
   [[nodiscard]] float next_surface(const Walk& walk, Surface& surface, std::uint64_t& rays) const;
   [[nodiscard]] Vertex vertex(const Surface& surface, const Vec3& direction) const;
 
-  // Light that the walk met at `surface` (a miss where null), by its last scattering alone, times
-  // its throughput.
+  // The emitted light that the walk's ray met at `surface`, or in the sky where it is null, times
+  // the walk's throughput and weighted against light sampling.
   [[nodiscard]] Rgb met(const Walk& walk, const Surface* surface) const;
 
-  // Radiance scattered at `v` straight from the lights, weighted against scattering. `every`: each
-  // light once, else one by power. Sets the bit of each light that `v` sees among those sampled.
+  // The radiance that `v` scatters directly from the lights, weighted against scattering. With
+  // `every` each light is sampled once, else one light chosen by power. Sets the visibility bit of
+  // each sampled light that `v` sees.
   [[nodiscard]] Rgb direct(const Vertex& v, bool every, Sampler& sampler, std::uint32_t& visibility,
                            std::uint64_t& rays) const;
 
-  // Where the material is rough enough in one lobe only, keeps one of the two at random and divides
-  // the throughput by its probability. True where `v` then is a vertex worth filtering, x_i.
+  // Where only one of two lobes is rough enough, keeps one of them at random and divides the
+  // throughput by its probability. Returns whether `v` is then rough enough to be x_i.
   [[nodiscard]] bool select_lobe(Vertex& v, Walk& walk, Sampler& sampler) const;
 
   // Sends the walk on from `v`; false where it is absorbed.
@@ -68,7 +69,7 @@ class Transport {
   // Russian roulette; false where the path ends.
   [[nodiscard]] bool survives(Walk& walk, Sampler& sampler) const;
 
-  // Everything about x_i that is known once the walk has arrived there.
+  // Writes everything about x_i that is known when the walk arrives there.
   void record_vertex(const Vertex& v, const Walk& walk, PathRecord& record) const;
 
  private:
@@ -81,7 +82,7 @@ class Transport {
   Accel accel_;
   Shapes shapes_;
   Lights lights_;
-  std::vector<std::shared_ptr<const CoatAlbedo>> coats_;  // by material, shared by those of one ior
+  std::vector<std::shared_ptr<const CoatAlbedo>> coats_;  // by material; equal ior share a table
 };
 
 }  // namespace psf::render

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "formats/error.h"
+#include "core/error.h"
 
 namespace psf::render {
 namespace fs = std::filesystem;

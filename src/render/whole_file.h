@@ -1,4 +1,4 @@
-// Files that are read at once.
+// Reads whole files.
 #pragma once
 
 #include <fstream>
@@ -6,10 +6,10 @@
 
 namespace psf::render {
 
-// Opens a regular file to be read from its beginning; returns its bytes. Throws Error{io} "FILE:
-// what", also for a folder and for a pipe: a scene may be read more than once.
+// Opens a regular file for reading and returns its size in bytes. Throws Error{io} "FILE: what",
+// also for a folder and for a pipe, since a scene may be read more than once.
 [[nodiscard]] std::size_t open_whole(const std::string& path, std::ifstream& file);
-// Throws Error{io} where what was read of the file is not all.
+// Throws Error{io} where the file was not read completely.
 void check_read(const std::string& path, const std::ifstream& file);
 
 // All bytes of a file, as a std::string or a vector of bytes.

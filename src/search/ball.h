@@ -16,14 +16,14 @@ namespace psf::search {
   return distance_sq(a.x - b.x, a.y - b.y, a.z - b.z);
 }
 
-// chi of [average] for j != i: strictly inside. A point is always its own neighbour; whoever asks
-// knows which point that is and adds it.
+// chi of [average] for j != i: strictly inside the ball. A point is always its own neighbour, which
+// the caller has to add.
 [[nodiscard]] inline bool chi_ball(float d_sq, float r_sq) {
   return d_sq < r_sq;
 }
 
 struct Neighbor {
-  std::uint32_t index;  // of the point, as it was given to the search
+  std::uint32_t index;  // number of the point in what was given to the search
   float d_sq;           // distance_sq to the centre, squared world units
   bool operator==(const Neighbor&) const = default;
 };

@@ -48,9 +48,9 @@ float gap_sq(const Box& a, const Box& b) {
 }
 
 struct BoxIndex::SizeClass {
-  std::vector<std::uint32_t> numbers;  // of its boxes, ascending
-  float half_diagonal = 0;             // the longest
-  std::unique_ptr<Index> centers;      // none for few boxes
+  std::vector<std::uint32_t> numbers;  // numbers of its boxes, ascending
+  float half_diagonal = 0;             // half of the longest diagonal of its boxes
+  std::unique_ptr<Index> centers;      // null for few boxes
 };
 
 BoxIndex::BoxIndex(std::vector<Box> boxes) : boxes_(std::move(boxes)) {

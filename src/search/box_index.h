@@ -1,4 +1,5 @@
-// Which of many boxes may be near a box: FLANN over their centres proposes, their bounds decide.
+// Finds those of many boxes that are near a given box: FLANN over the centres proposes boxes, their
+// bounds decide.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +11,18 @@
 
 namespace psf::search {
 
-// Closed, low <= high in every component, finite.
+// A closed box; low <= high in every component, all finite.
 struct Box {
   Vec3 low, high;
 };
 
-// The distance between two boxes in the operations of distance_sq(): by rounding's monotony it is
-// at most that of any two points in them, to the last bit. Squared world units.
+// The squared distance between two boxes, squared world units, with the operations of
+// distance_sq(). Because rounding is monotone, it is at most the distance_sq() of any two points in
+// the boxes.
 [[nodiscard]] float gap_sq(const Box& a, const Box& b);
 
-// Boxes are kept in classes of similar size, a FLANN index each, so that a few large ones do not
-// lengthen the search for all.
+// Boxes are kept in classes of similar size, each with a FLANN index, so that a few large boxes do
+// not make every search slower.
 class BoxIndex {
  public:
   explicit BoxIndex(std::vector<Box> boxes);
@@ -35,7 +37,7 @@ class BoxIndex {
 
   std::vector<Box> boxes_;
   std::vector<SizeClass> classes_;
-  float largest_coordinate_ = 0;  // in absolute value
+  float largest_coordinate_ = 0;  // largest absolute value of any coordinate
 };
 
 }  // namespace psf::search

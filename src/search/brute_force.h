@@ -1,4 +1,4 @@
-// The oracle: tests every point.
+// A search that tests every point; the oracle for the others.
 #pragma once
 
 #include "search/search.h"

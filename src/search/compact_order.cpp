@@ -108,7 +108,7 @@ void sort_all(Points from, Points to) {
   });
 }
 
-// Of a run: every segment of `segment` points sorted along its own longest side.
+// Sorts each segment of `segment` points of a run along the longest side of the segment's box.
 void sort_segments(Points from, Points to, std::size_t segment) {
   const std::size_t segments = core::range_count(from.size(), segment);
   Keys<std::uint32_t> keys(from.size(), segments);

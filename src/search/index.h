@@ -5,13 +5,13 @@
 
 namespace psf::search {
 
-// Facts about FLANN 1.9.2 that this class stands on: KDTreeSingleIndex is exact (KDTreeIndex is
-// not); its pruning rounds, so it is asked for a slightly larger ball; NaN raises no error and an
-// empty set is undefined, so both are kept from it; halves of coordinates beyond FLT_MAX / 2
+// This class relies on these facts about FLANN 1.9.2: KDTreeSingleIndex is exact (KDTreeIndex is
+// not). Its pruning rounds, so it is asked for a slightly larger ball. It raises no error for NaN
+// and is undefined for an empty set, so it is given neither. Coordinates beyond FLT_MAX / 2
 // overflow in its splits, so sets with such points are searched by brute force.
 class Index final : public Search {
  public:
-  // Throws Error{limit} above 2^31 - 1 points. Non-finite coordinates are the caller's mistake.
+  // Coordinates must be finite. Throws Error{limit} above 2^31 - 1 points.
   explicit Index(std::span<const Vec3> points);
   ~Index() override;
 

@@ -16,7 +16,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kWaveNumber = 4 * kPi, kAmplitude = 0.5;
 constexpr double kLeft = 1, kRight = 3, kEdge = 0.5;
-constexpr int kSteps = 32;  // of the midpoint rule, for the mean over a pixel
+constexpr int kSteps = 32;  // number of steps of the midpoint rule, for the mean over a pixel
 
 template <class Function>
 double mean_over_pixel(std::size_t column, const Function& function) {

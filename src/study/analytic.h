@@ -1,5 +1,4 @@
-// Built-in scenes whose filtered pictures are known in closed form: what a convergence study must
-// find.
+// Built-in scenes whose filtered pictures are known in closed form, to check convergence studies.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +12,9 @@
 
 namespace psf::study {
 
-// The unit square seen from above by kSize x kSize pixels, distance 1, a path a pixel and pass at a
-// random place in it. c = f(x) times an exponential random number of mean 1.
+// The unit square, seen from above at distance 1 by kSize x kSize pixels. Each pass has one path
+// per pixel, at a random place in the pixel. c is f(x) times an exponential random number of mean
+// 1.
 enum class AnalyticScene : std::uint8_t {
   smooth,  // f = 1 + cos(4 pi x) / 2
   edge     // f = 1 left of the middle, 3 right of it
@@ -27,17 +27,17 @@ class Analytic {
   explicit Analytic(AnalyticScene scene) : scene_(scene) {}
 
   [[nodiscard]] const char* name() const;  // "smooth", "edge"
-  // (kSize, kSize) means of f over the pixels.
+  // The means of f over the pixels, (kSize, kSize).
   [[nodiscard]] std::vector<Rgb> reference() const;
-  // Writes a dump; other seeds are independent.
+  // Writes a dump. Dumps of different seeds are independent.
   void write_dump(const std::string& path, std::uint64_t seed, std::uint64_t passes) const;
 
-  // Where no ball of this radius, in pixels, is cut by the border of the square.
+  // The pixels whose balls of this radius, in pixels, are not cut by the border of the square.
   [[nodiscard]] static Rectangle inside(double radius);
 
-  // Blocks of one pass, no weights, footprint. E[picture] after n passes minus the reference, as
-  // mean square over r^2 + epsilon in `inside`: what `bias_sq` should be, but for the record's own
-  // share of its ball.
+  // The expected `bias_sq` after n passes, for blocks of one pass, no weights and a radius in
+  // pixels: the mean over `inside` of the squared difference of expected picture and reference,
+  // over reference^2 + epsilon. The share that a record itself has in its ball is neglected.
   [[nodiscard]] double bias_sq(const filter::Radius& radius, std::uint64_t n, double epsilon,
                                const Rectangle& inside) const;
 

@@ -1,4 +1,4 @@
-// Hands out the blocks of a dump, the next one read while the caller works on this one.
+// Reads the blocks of a dump; the next block is read while the caller works on this one.
 #pragma once
 
 #include <optional>
@@ -12,12 +12,14 @@ namespace psf::study {
 
 class BlockReader {
  public:
-  // Both must outlive it. The dump must not be refreshed while a block is being read ahead.
+  // Dump and channels must outlive the reader. The dump must not be refreshed while a block is
+  // being read ahead.
   BlockReader(const Dump& dump, const ChannelSet& channels) : dump_(dump), channels_(channels) {}
 
-  // The records of a block, until the next call. Where `next` is given its reading starts, beside
-  // the caller's work; it takes the memory of a second block. Throws what Dump::read throws: of a
-  // block read ahead when it is asked for; Error{interrupted}.
+  // The records of the block `range`, valid until the next call. Where `next` is given, that block
+  // is read beside the caller's work, which takes the memory of a second block. Throws
+  // Error{interrupted} and what Dump::read() throws; errors of a block read ahead are thrown when
+  // it is asked for.
   [[nodiscard]] const BlockRecords& read(const filter::PathRange& range,
                                          const std::optional<filter::PathRange>& next);
   // The seconds that the caller waited for read().

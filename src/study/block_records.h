@@ -8,7 +8,7 @@
 
 namespace psf::study {
 
-// Columns that nothing asked for are empty. Vec3 and Rgb are three packed floats.
+// Columns that were not asked for are empty. Vec3 and Rgb are three packed floats.
 struct BlockRecords {
   std::vector<std::uint8_t> flags;
   std::vector<Vec3> position;

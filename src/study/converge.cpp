@@ -99,7 +99,7 @@ class Study {
 
   [[nodiscard]] std::size_t sets_at_once(const VariantGroup& group) const {
     const std::uint64_t pictures =
-        dumps_.size() * c_.n.size() * picture_.size() * sizeof(Rgb);  // of a set
+        dumps_.size() * c_.n.size() * picture_.size() * sizeof(Rgb);  // bytes per set
     const auto fitting = static_cast<std::size_t>(c_.max_memory.value_or(kMostPictures) / pictures);
     const std::size_t filtering =
         radii_at_once(dumps_.front(), run_of({&group, 0, group.radii.size()}));

@@ -1,4 +1,5 @@
-// A convergence study in its folder: converge.json and converge.csv; what it says about time.
+// The files converge.json and converge.csv of a convergence study, and gains at equal time and
+// error.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +13,14 @@
 
 namespace psf::study {
 
-// Seconds of a pass, as psf-render's --json has them.
+// The seconds that rendering a pass takes, as in psf-render's --json.
 struct RenderTime {
-  double render = 0;  // without dump
-  double dump = 0;
+  double render = 0;  // without writing the dump
+  double dump = 0;    // for writing the dump
 };
 
-// How much a set gains at n passes against the same renderer without filter, whose error falls as
-// 1 / n beyond what was measured.
+// The gain of a set at n passes over the same renderer without filter. Beyond the measured passes,
+// the error without filter is assumed to fall as 1 / n.
 struct SpeedUp {
   std::size_t series = 0;  // index
   std::uint64_t n = 0;
@@ -27,12 +28,12 @@ struct SpeedUp {
   double equal_error = 0;  // time to the same error without filter over the time with it
 };
 
-// relMSE of every series but the first, which is the unfiltered one; empty where the sets' times
-// were not measured. Unfiltered pictures need no dump.
+// The gains in relMSE of every series but the first, which is unfiltered. Empty where the sets'
+// times were not measured. The time without filter does not include the dump.
 [[nodiscard]] std::vector<SpeedUp> speed_ups(std::span<const ConvergeSeries> series,
                                              const RenderTime& time);
 
-// A measured slope beside the one that theory gives for it.
+// A measured slope, and the slope that theory predicts.
 struct SlopeCheck {
   std::size_t series = 0;  // index
   std::string quantity;    // "bias_sq", "variance"
@@ -48,15 +49,15 @@ struct ConvergeReport {
   std::vector<ConvergeSeries> series;
   std::optional<RenderTime> time;
   std::vector<SpeedUp> speed_ups;
-  std::vector<SlopeCheck> checks;  // of an analytic scene
-  bool with_pictures = false;      // names are those of picture_name()
+  std::vector<SlopeCheck> checks;  // for an analytic scene
+  bool with_pictures = false;      // pictures were written, with names by picture_name()
 };
 
-// "0001.n0004.exr", "unfiltered.n0004.exr"; series 0 is the unfiltered one.
+// The file name of a picture, "0001.n0004.exr", or "unfiltered.n0004.exr" for series 0.
 [[nodiscard]] std::string picture_name(std::size_t series, std::uint64_t n);
 
 [[nodiscard]] Json to_json(const ConvergeReport& report);
-// A line a series and n.
+// A table with one line for each series and n.
 [[nodiscard]] std::string to_csv(const ConvergeReport& report);
 
 }  // namespace psf::study

@@ -1,5 +1,4 @@
-// A path-vertex buffer as the filter wants it: cameras, passes, and blocks of the channels that are
-// needed.
+// Reads a path-vertex buffer for the filter: cameras, passes, and blocks of the channels in use.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +14,9 @@
 
 namespace psf::study {
 
-// Channels by their place in the file; not set: not read. What is optional in a dump stands at its
-// default: without `flags` every path has a shaded vertex, without `unfiltered` it is 0, without
-// `camera` it is camera 0.
+// The channels to read, by their place in the file; those not set are not read. A channel that a
+// dump may lack has a default: without `flags` every path has a shaded vertex, without `unfiltered`
+// u is 0, without `camera` every path belongs to camera 0.
 struct ChannelSet {
   std::optional<std::size_t> flags, position, distance, throughput, contribution, unfiltered, pixel,
       camera, normal, reflectance, visibility, hit_distance, direction, material, roughness;
@@ -29,24 +28,24 @@ class Dump {
   // camera.
   explicit Dump(const std::string& path);
 
-  // Takes in the passes committed since; true where the file says more than before. Throws what the
-  // constructor throws.
+  // Takes in what was committed since the file was read; returns whether there was anything new.
+  // Throws what the constructor throws.
   bool refresh();
 
   [[nodiscard]] const formats::Reader& reader() const { return reader_; }
   [[nodiscard]] const formats::Metadata& metadata() const { return metadata_; }
   [[nodiscard]] const std::vector<filter::CameraView>& cameras() const { return cameras_; }
-  [[nodiscard]] std::uint64_t pixels() const { return pixels_; }  // of all cameras
-  // First path of each pass, and the end.
+  [[nodiscard]] std::uint64_t pixels() const { return pixels_; }  // number over all cameras
+  // The first path of each pass, and the end of the last one.
   [[nodiscard]] const std::vector<std::uint64_t>& pass_bounds() const { return pass_bounds_; }
 
-  // What the parameters use. With `guides`, normal and reflectance too where the file has them.
-  // Throws Error{bad_input} naming the channel that is missing or of another type, and who needs
-  // it.
+  // The channels that `parameters` use; with `guides`, also normal and reflectance where the file
+  // has them. Throws Error{bad_input} that names a channel that is missing or has another type, and
+  // what needs it.
   [[nodiscard]] ChannelSet select(const filter::Parameters& parameters, bool guides) const;
 
-  // Reads paths [range.first, range.last), columns in parallel. Throws Error{bad_input} naming the
-  // record whose pixel or camera does not exist. Thread-safe.
+  // Reads the paths [range.first, range.last), columns in parallel. Throws Error{bad_input} that
+  // names a record whose pixel or camera does not exist. Thread-safe.
   void read(const filter::PathRange& range, const ChannelSet& channels, BlockRecords& out) const;
 
  private:

@@ -155,7 +155,7 @@ FilterOutcome follow_dump(Dump& dump, const FilterRun& run,
                           const std::function<void(const FilterOutcome&)>& on_pictures,
                           const std::function<void()>& wait) {
   run.parameters.validate();
-  Runner runner(dump, run, 3);  // of whole blocks, with the last one, and handed out before
+  Runner runner(dump, run, 3);  // 3 sets: whole blocks, with the last block, handed out before
   FilterOutcome outcome;
   for (;;) {
     const std::size_t passes = dump.pass_bounds().size() - 1;

@@ -1,4 +1,4 @@
-// A whole dump through the filter, block by block, into pictures.
+// Filters a whole dump, block by block, into pictures.
 #pragma once
 
 #include <cstdint>
@@ -19,43 +19,44 @@ namespace psf::study {
 
 struct FilterRun {
   filter::Parameters parameters;
-  PassSelection passes;  // act as a dump of their own, but that blocks of b^m stay where they are
+  PassSelection passes;  // treated as a dump of their own, but blocks of b^m stay in place
   PictureLayers layers;
   std::vector<std::uint64_t>
-      snapshots;  // pictures after so many of the passes, ascending, each at least 1
-  // All paths of the first `passes` passes, each filtered with its whole block. One entry a camera.
+      snapshots;  // numbers of passes after which pictures are wanted, ascending, each >= 1
+  // Called for each snapshot, with the pictures of the first `passes` passes, one per camera. Each
+  // path is filtered with its whole block.
   std::function<void(std::uint64_t passes, std::span<const CameraPictures>)> on_snapshot;
   std::function<void(std::uint64_t done, std::uint64_t total)>
-      on_progress;  // paths, after every block
-  // Bytes, kept by the estimate of memory.h: first the next block is no longer read ahead, which is
-  // slower and gives the same bytes. Not set: no limit.
+      on_progress;  // called after every block; counts paths
+  // The limit in bytes for the estimate of memory.h; not set: none. Where reading ahead would
+  // exceed it, blocks are not read ahead, which is slower and gives the same pictures.
   std::optional<std::uint64_t> max_memory;
-  bool with_noise = false;  // of the picture without filter; see FilterOutcome::noise
+  bool with_noise = false;  // measure FilterOutcome::noise
 };
 
 struct FilterOutcome {
-  std::vector<CameraPictures> pictures;  // one a camera
-  std::vector<NoiseMoments> noise;       // one a camera where the run asked for them, else none
+  std::vector<CameraPictures> pictures;  // one per camera
+  std::vector<NoiseMoments> noise;       // one per camera with FilterRun::with_noise, else none
   filter::Statistics statistics;
   std::uint64_t passes = 0, blocks = 0;
-  std::uint64_t overflows =
-      0;                    // paths left out because throughput times average is no finite float
-  double seconds_read = 0;  // waiting for the reader, which works beside the filter
-  double seconds_film = 0;  // adding up pictures
+  std::uint64_t overflows = 0;  // paths left out because their radiance overflows
+  double seconds_read = 0;      // time spent waiting for the reader, which works beside the filter
+  double seconds_film = 0;      // time spent adding up pictures
   MemoryEstimate memory;
 };
 
-// The next block is read while one is filtered. Memory: MemoryEstimate, whatever the length of the
-// dump. Throws what Dump, Blocks and average() throw, of each block once those before it are in the
-// pictures; Error{usage} for passes or snapshots that the dump does not have; Error{limit} where
-// `max_memory` cannot be kept, before any work; Error{interrupted}.
+// Filters a dump. The next block is read while one is filtered. The memory is that of
+// MemoryEstimate, whatever the length of the dump. Throws Error{limit} before any work where
+// `max_memory` cannot be kept, Error{usage} for passes or snapshots that the dump does not have,
+// Error{interrupted}, and what Dump, Blocks and average() throw; the errors of a block come after
+// the blocks before it are in the pictures.
 [[nodiscard]] FilterOutcome filter_dump(const Dump& dump, const FilterRun& run);
 
-// The same for a dump that is still being written: calls `on_pictures` whenever passes were
-// committed, with what filter_dump() would give for all there are by then, until the dump is closed
-// or has the last pass of the selection. Blocks that are whole are filtered once. Calls `wait`
-// between two looks at the file; it may throw to stop. Without snapshots and progress. What it
-// returns `on_pictures` was given last.
+// Filters a dump that is still being written, until it is closed or has the last pass of the
+// selection. Whenever passes were committed, it calls `on_pictures` with what filter_dump() would
+// return for all passes so far. Whole blocks are filtered only once. Between two looks at the file
+// it calls `wait`, which may throw to stop. There are no snapshots and no progress. Returns what
+// `on_pictures` got last.
 [[nodiscard]] FilterOutcome follow_dump(
     Dump& dump, const FilterRun& run, const std::function<void(const FilterOutcome&)>& on_pictures,
     const std::function<void()>& wait);

@@ -1,4 +1,4 @@
-// Adds what a traversal for many radii averages to the pictures of its cameras, on all threads.
+// Adds the averages of a traversal for many radii to the pictures of its cameras, on all threads.
 #pragma once
 
 #include <array>
@@ -12,13 +12,14 @@
 
 namespace psf::study {
 
-// In a slab the part of queries that meets a pixel first adds to it as it goes. What other parts
-// have for the pixel waits for the end of the slab, so that no two threads add to one pixel and the
-// sums are the same for any number of threads. Queries near to each other share parts: few wait.
+// In a slab, each pixel belongs to the first part that has a query in it; this part adds to the
+// pixel at once. The averages of other parts for the pixel wait until the end of the slab. So no
+// two threads add to one pixel, and the sums are the same for any number of threads. Few averages
+// wait, because queries near to each other are in the same part.
 class ManyAdder : public filter::Receiver {
  public:
-  // Before a block: its records, and a picture for each camera, the same cameras each time; both
-  // borrowed.
+  // Call this before each block with its records and a picture for each camera, the same cameras
+  // each time. Both are borrowed.
   void start(const filter::Records& records, std::span<ManyPictures> pictures);
 
   void set_roles(std::span<const filter::Role> roles) override { roles_ = roles; }
@@ -27,10 +28,10 @@ class ManyAdder : public filter::Receiver {
             std::span<const Rgb> c_bar) override;
   void end() override;
 
-  // Of paths of the block, over all radii.
+  // The number of overflows of paths of the block, over all radii.
   [[nodiscard]] std::uint64_t overflows() const { return overflows_; }
 
-  // Bytes of what waits, at most.
+  // The most bytes that waiting averages take.
   [[nodiscard]] static std::uint64_t memory(std::size_t radii);
   static constexpr std::uint64_t kBytesAPixel = sizeof(std::uint64_t);
 
@@ -38,7 +39,7 @@ class ManyAdder : public filter::Receiver {
   struct Overflow {
     std::uint32_t record;
     std::size_t radius;
-    bool everywhere;  // it is in no picture: add_record() adds nothing of it
+    bool everywhere;  // the record is in no picture, since add_record() does not add it
   };
   using Overflows = std::vector<Overflow>;
   struct Late {
@@ -47,10 +48,10 @@ class ManyAdder : public filter::Receiver {
   };
   struct Part {
     std::vector<Late> late;
-    std::vector<Rgb> c_bar;  // of all who are late
+    std::vector<Rgb> c_bar;  // the averages of all late records
     Overflows overflows;
   };
-  static constexpr std::size_t kShares = 16;  // of the pixels
+  static constexpr std::size_t kShares = 16;  // into which the pixels are divided
 
   void add(Overflows& overflows, std::uint32_t i, std::size_t first, std::span<const Rgb> c_bar);
   void leave_out(Overflows& overflows);
@@ -66,11 +67,12 @@ class ManyAdder : public filter::Receiver {
   std::span<const filter::Role> roles_;
   std::span<const std::uint32_t> queries_;
   std::size_t grain_ = 0;
-  // By camera and pixel: the part that met it first, counted over all slabs from 1 on.
+  // By camera and pixel: the first part with a query in it. Parts are numbered over all slabs, from
+  // 1.
   std::vector<std::vector<std::uint64_t>> owner_;
   std::uint64_t before_ = 1;  // the number of the slab's first part
   std::vector<Part> parts_;
-  std::array<Overflows, kShares> shares_;  // of those who are late
+  std::array<Overflows, kShares> shares_;  // overflows of late records
   std::uint64_t overflows_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// What stands for the reference where there is none.
+// An estimate of the reference for dumps that have none.
 #pragma once
 
 #include <cstddef>
@@ -7,10 +7,10 @@
 
 namespace psf::study {
 
-// (height, width) the median over the square of 5 x 5 pixels around, as far as it lies in the
-// picture. Of a picture without filter, nothing that a filter does is in it, and neither is what a
-// rare bright path or the rim of a lamp leaves in fewer than half of the pixels. Values that are
-// not finite do not count; 0 where none is.
+// For each pixel the median over the 5 x 5 pixels around it that lie in the picture, (height,
+// width). Values that are not finite do not count; the result is 0 where no value is finite. For a
+// picture without filter the median depends on no filter, and rare bright paths and rims of lamps,
+// which reach fewer than half of the pixels, are not in it.
 [[nodiscard]] std::vector<double> median_around(std::span<const double> values, std::size_t width);
 
 }  // namespace psf::study

@@ -20,14 +20,15 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr std::uint64_t kProgram =
     48 * kMiB;  // libraries, once relocated, and what the allocator keeps
 // Holes that the allocator keeps between the arrays of one block and those of the next.
-constexpr std::uint64_t kHolesShare = 5, kMostHoles = 32 * kMiB;  // of what the filter needs
-constexpr std::uint64_t kThread = 4 * kMiB;  // stack, arena, scratch of the filter
+constexpr std::uint64_t kHolesShare = 5,
+                        kMostHoles = 32 * kMiB;  // 1/5 of the filter, at most 32 MiB
+constexpr std::uint64_t kThread = 4 * kMiB;      // stack, arena, scratch of the filter
 // What the reader keeps of chunks that blocks cut.
 constexpr std::uint64_t kReaderCache = 32 * kMiB;
 
-constexpr std::streamsize kLongestLine = 1 << 20;  // of /proc
+constexpr std::streamsize kLongestLine = 1 << 20;  // longest line of a file in /proc
 
-// In memory, of the channels that are read; flags are made up where the file has none.
+// The bytes per record in memory for the channels that are read; flags are always there.
 std::uint64_t record_bytes(const ChannelSet& set) {
   constexpr std::uint64_t kVector = 12, kWord = 4, kHalf = 2;
   std::uint64_t bytes = sizeof(std::uint8_t);

@@ -1,4 +1,4 @@
-// Weights that a dump cannot serve: what nobody asked for is done without.
+// Switches off the terms of w_ij whose channel a dump lacks, unless the user asked for them.
 #pragma once
 
 #include <span>
@@ -10,9 +10,9 @@
 
 namespace psf::study {
 
-// Switches off, in every set, the terms that look at a channel that `dump` does not have, but for
-// those `asked` for, which Dump::select() refuses. Returns a line that names all of them, the dump
-// and the channels; empty where there is nothing to say.
+// Switches off, in every set, the terms that compare a channel that `dump` does not have, except
+// those in `asked`, for which Dump::select() will throw. Returns a line that names these terms, the
+// dump and the channels; empty where there are none.
 [[nodiscard]] std::string switch_off_missing(const Dump& dump, std::span<filter::Parameters> sets,
                                              filter::TermSet asked);
 

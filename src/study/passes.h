@@ -1,4 +1,4 @@
-// Which passes of a dump a run takes, and what the filter is to know of their blocks.
+// The passes of a dump that a run takes, and the description of their blocks for the filter.
 #pragma once
 
 #include <cstddef>
@@ -17,10 +17,11 @@ struct PassSelection {
   std::optional<std::size_t> last;
 };
 
-// The end of the selection; throws Error{usage} for passes that the dump does not have, or none.
+// The end of the selection. Throws Error{usage} where it is empty or has passes that the dump does
+// not have.
 [[nodiscard]] std::size_t last_pass(const Dump& dump, const PassSelection& selection);
 
-// Block k of `blocks`, with n of [radius] as `count` asks.
+// Describes block k of `blocks`; n of [radius] counts what `count` says.
 [[nodiscard]] filter::Block describe_block(const Dump& dump, const filter::Blocks& blocks,
                                            std::uint64_t k, filter::RadiusCount count);
 

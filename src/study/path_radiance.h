@@ -1,4 +1,5 @@
-// What a path brings to its pixel, u + alpha c: the same operations for every picture.
+// The radiance that a path adds to its pixel, u + alpha c, with the same operations for every
+// picture.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +9,12 @@
 
 namespace psf::study {
 
-// u of a record, 0 where the records have none.
+// u of record i; 0 where the records have no u.
 [[nodiscard]] inline Rgb unfiltered_of(const filter::Records& records, std::size_t i) {
   return records.unfiltered.empty() ? Rgb(0, 0, 0) : records.unfiltered[i];
 }
 
-// `c`: the contribution, or what stands for it.
+// u + alpha c; `c` is the contribution or its replacement, c_bar.
 [[nodiscard]] inline Rgb path_radiance(const Rgb& u, const Rgb& alpha, const Rgb& c) {
   return {u.x + alpha.x * c.x, u.y + alpha.y * c.y, u.z + alpha.z * c.z};
 }

@@ -1,5 +1,5 @@
-// What a filter run shows of one camera: the picture, what went in, and what helps to understand
-// it.
+// The pictures of one camera that a filter run makes: the result, the input, and layers that help
+// to understand the result.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace psf::study {
 
-// What a picture shows beside R, G, B.
+// The layers of a picture in addition to R, G, B.
 struct PictureLayers {
   bool unfiltered = true, neighbors = true, radius = true;
   bool albedo = true, normal = true;  // where the dump has the channels
@@ -23,18 +23,18 @@ class CameraPictures {
  public:
   CameraPictures(const filter::CameraView& camera, const PictureLayers& layers);
 
-  // [pixel]: adds record i of a filtered block. A pixel's records in path order, from one thread.
-  // Returns false where the radiance overflows; then the path is left out.
+  // Adds record i of a filtered block [pixel]. Add the records of a pixel in path order, from one
+  // thread. Returns false where the radiance overflows; then the path is left out.
   bool add(const filter::Records& records, const filter::Average& average,
            std::span<const float> radius, std::size_t i);
 
-  // R, G, B filtered; unfiltered-input.R/G/B of those of the same paths that is_input() names, a
-  // pixel that has none of these filled as film::Film::filled_mean() has it; neighbors.Y and
-  // radius.Y, means over the paths with a vertex; albedo.R/G/B and normal.X/Y/Z, 0 where a path has
-  // no vertex. Of them those that were asked for.
+  // The picture with R, G, B, filtered, and those of these layers that were asked for:
+  // unfiltered-input.R/G/B, over the paths for which is_input() is true, filled as in
+  // film::Film::filled_mean() where a pixel has no such path; neighbors.Y and radius.Y, means over
+  // the paths with a vertex; albedo.R/G/B and normal.X/Y/Z, where paths without vertex count as 0.
   [[nodiscard]] film::Image image() const;
 
-  // Bytes a pixel: of the sums, and what image() and writing it take for a moment.
+  // The bytes per pixel of the sums, and those that image() and writing it take temporarily.
   static constexpr std::uint64_t kBytesOfSums = 5 * (3 * sizeof(double) + sizeof(std::uint64_t));
   static constexpr std::uint64_t kBytesToWrite = 2 * 14 * sizeof(float);
 
@@ -48,9 +48,9 @@ class CameraPictures {
   film::Film albedo_, normal_;
 };
 
-// Adds records [first, last) of a filtered block to the pictures of their cameras, threads sharing
-// the pixels: the same sums for any number of threads. Returns how many paths were left out because
-// of an overflow.
+// Adds the records [first, last) of a filtered block to the pictures of their cameras. Threads
+// share the pixels, so the sums are the same for any number of threads. Returns how many paths were
+// left out because of an overflow.
 [[nodiscard]] std::uint64_t add_records(const filter::Records& records,
                                         const filter::Average& average,
                                         std::span<const float> radius, std::size_t first,

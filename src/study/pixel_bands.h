@@ -1,5 +1,5 @@
-// Shares the pixels of a block's records among threads, so that what is added up by pixel is the
-// same for any number of them.
+// Shares the pixels of a block's records among threads, so that sums by pixel are the same for any
+// number of threads.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace psf::study {
 
-// Pixels are dealt out to bands in runs, so that two threads seldom write to one cache line, and so
-// that records of a part of the picture keep all of them busy.
+// Pixels are given to the bands in short runs, in turn. So two threads seldom write to one cache
+// line, and the records of a small part of the picture still keep all threads busy.
 inline constexpr std::uint32_t kPixelRun = 64;
 inline constexpr std::size_t kMostBands = 32;
 
@@ -22,8 +22,8 @@ inline constexpr std::size_t kMostBands = 32;
   return std::bit_ceil(std::min(core::thread_count(), kMostBands));
 }
 
-// Calls visit(band, i) for records [first, last), bands side by side; a pixel's records come in
-// path order and from one band, below pixel_bands().
+// Calls visit(band, i) for the records [first, last), the bands in parallel; band < pixel_bands().
+// The records of a pixel come in path order and from one band.
 template <class Visit>
 void for_each_by_pixel(const filter::Records& records, std::size_t first, std::size_t last,
                        const Visit& visit) {
@@ -32,7 +32,8 @@ void for_each_by_pixel(const filter::Records& records, std::size_t first, std::s
   core::parallel_for(bands, 1, [&](std::size_t band, std::size_t) {
     std::array<std::size_t, kBatch> mine;
     for (std::size_t begin = first; begin < last; begin += kBatch) {
-      // Without a branch: of a picture in random order it would be guessed wrong half of the time.
+      // There is no branch, because it would be mispredicted half of the time for paths in random
+      // order.
       std::size_t count = 0;
       for (std::size_t i = begin, end = std::min(last, begin + kBatch); i < end; ++i) {
         mine[count] = i;

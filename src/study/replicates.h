@@ -1,4 +1,4 @@
-// Bias and variance of a picture apart, from independent replicates of it.
+// Bias and variance of a picture, estimated from independent replicates of it.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +15,13 @@ struct Interval {
   double high = std::numeric_limits<double>::quiet_NaN();
 };
 
-// Parts of relMSE: squares over r^2 + epsilon, r the reference, means over pixels and channels.
-// Expected values: error = bias_sq + variance. `bias_sq` is estimated without bias, so it may be
-// below 0 where it is small; the reference's own error is in it.
+// The parts of relMSE: squares over r^2 + epsilon, where r is the reference, as means over pixels
+// and channels. The expected values satisfy error = bias_sq + variance. `bias_sq` is estimated
+// without bias, so it may be below 0 where it is small; it includes the error of the reference.
 struct ErrorParts {
-  double error = std::numeric_limits<double>::quiet_NaN();  // of one replicate, the mean over all
-  // Of at least two replicates, else NaN; 95% intervals by the jackknife, of at least three.
+  double error = std::numeric_limits<double>::quiet_NaN();  // mean error of a single replicate
+  // NaN with fewer than two replicates. The 95% intervals are by the jackknife, and NaN with fewer
+  // than three.
   double bias_sq = std::numeric_limits<double>::quiet_NaN();
   double variance = std::numeric_limits<double>::quiet_NaN();
   Interval bias_sq_interval, variance_interval;
@@ -31,9 +32,10 @@ struct Rectangle {
   std::size_t x = 0, y = 0, width = 0, height = 0;
 };
 
-// `replicates`: pictures of the reference's size, (height, width); `width` of them. Only pixels of
-// `region`, all where it is empty, that are finite in every replicate and in the reference count.
-// The same bits for any number of threads.
+// Estimates the parts of relMSE. `replicates` are pictures of the reference's size, (height,
+// width). The means are over the pixels of `region` (all, where it is empty) that are finite in
+// every replicate and in the reference. The result is the same to the last bit for any number of
+// threads.
 [[nodiscard]] ErrorParts decompose(std::span<const std::vector<Rgb>> replicates,
                                    std::span<const Rgb> reference, std::size_t width,
                                    double epsilon, const Rectangle& region = {});

@@ -1,5 +1,5 @@
-// What the files of sweeps and convergence studies have in common: which dump, which reference,
-// which metrics, and numbers as JSON has them.
+// The common parts of the files of sweeps and convergence studies: descriptions of dump, reference
+// and metrics, and numbers in JSON.
 #pragma once
 
 #include <cstddef>
@@ -17,28 +17,29 @@ namespace psf::study {
 
 using Json = nlohmann::ordered_json;
 
-inline constexpr int kStudyFormat = 1;  // of the files; a change that readers must know raises it
+inline constexpr int kStudyFormat = 1;  // raised where readers have to know of a change
 
-// null for what is no finite number.
+// `value`, or null where it is not finite.
 [[nodiscard]] Json number_or_null(double value);
 
-// The dump, the passes and the camera that a study looks at.
+// Describes the dump, the passes and the camera of a study.
 [[nodiscard]] Json describe_input(const Dump& dump, const PassSelection& passes,
                                   std::size_t camera);
-// `file`: as the user gave it; the checksum tells pictures apart.
+// Describes a reference. `file`: the name that the user gave. A checksum tells pictures apart.
 [[nodiscard]] Json describe_reference(const std::string& file, std::span<const Rgb> picture);
-// An entry a metric: its name, what it depends on, whether lower is better.
+// Describes each metric by its name, its settings, and whether lower is better.
 [[nodiscard]] Json describe_metrics(std::span<const Metric> metrics, const MetricOptions& options);
-// Values by name.
+// The values of the metrics `asked`, by name.
 [[nodiscard]] Json to_json(const Metrics& metrics, std::span<const Metric> asked);
-// Text by the name of its option, as psf filter takes it.
+// Each parameter as text by the name of its option, as psf filter takes it.
 [[nodiscard]] Json to_json(const filter::Parameters& parameters);
 
-// A value as a cell of a table: quoted where it must be, empty for null.
+// A value as a cell of a CSV table: quoted where it must be, empty for null.
 [[nodiscard]] std::string csv_cell(const Json& value);
 
-// Throws Error{bad_input} where the file is no JSON or of another kind or format, Error{io} where
-// it cannot be read. `kind`: "sweep"; `remedy`: ends the message.
+// Reads the file of a study. `kind`: for example "sweep"; `remedy`: the end of error messages.
+// Throws Error{bad_input} where the file is no JSON or has another kind or format, Error{io} where
+// it cannot be read.
 [[nodiscard]] Json read_study_file(const std::string& path, const std::string& kind,
                                    const std::string& remedy);
 

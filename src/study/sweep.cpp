@@ -67,7 +67,7 @@ class Sweeper {
   const Sweep& s_;
   std::vector<VariantGroup> groups_;
   std::vector<Traversal> traversals_;
-  std::uint64_t paths_ = 0, done_ = 0;  // of a traversal; traversals
+  std::uint64_t paths_ = 0, done_ = 0;  // number of paths in a traversal; of traversals done
 };
 
 }  // namespace

@@ -18,14 +18,14 @@
 
 namespace psf::study {
 
-// What a row of a sweep says.
+// The results of one row of a sweep.
 struct SweepRow {
   filter::Parameters parameters;
   Metrics metrics;
-  double neighbors = 0;                      // mean of a query
-  double first_radius = 0, last_radius = 0;  // pixels, mean of the first block and of the last
-  std::uint64_t orphans = 0, left_out = 0;   // records, of all blocks
-  double seconds = 0;  // of the traversal, with reading and pictures, that `shared` rows share
+  double neighbors = 0;                      // mean number per query
+  double first_radius = 0, last_radius = 0;  // means in the first and the last block, pixels
+  std::uint64_t orphans = 0, left_out = 0;   // numbers of records in all blocks
+  double seconds = 0;  // time of the traversal that `shared` rows share, with reading and pictures
   std::size_t shared = 1;
 };
 
@@ -34,18 +34,18 @@ struct Sweep {
   PassSelection passes;
   std::size_t camera = 0;
   std::optional<std::uint64_t> max_memory;  // bytes
-  // Rows in the order in which they are done, with the picture.
+  // Called for each row when it is done, with its picture.
   std::function<void(std::size_t row, const SweepRow&, const std::vector<Rgb>& picture)> on_row;
-  // After the rows of a traversal: a good moment to keep what there is.
+  // Called after the rows of a traversal, so that results can be saved.
   std::function<void()> on_traversal;
-  // Once, before the first row: the same paths without filter.
+  // Called once, before the first row, with the picture of the same paths without filter.
   std::function<void(const Metrics&, const std::vector<Rgb>& picture)> on_unfiltered;
   std::function<void(std::uint64_t done, std::uint64_t total)>
-      on_progress;  // paths, all traversals
+      on_progress;  // counts paths over all traversals
 };
 
-// Rows that share everything but r0 and delta share a traversal, as many as the memory allows.
-// Throws what filter_many() throws.
+// Runs a sweep. Rows that differ only in r0 and delta share a traversal, as many as the memory
+// allows. Throws what filter_many() throws.
 void run_sweep(const Dump& dump, const Reference& reference, const Sweep& sweep);
 
 }  // namespace psf::study

@@ -1,4 +1,4 @@
-// A sweep in its folder: sweep.json and sweep.csv, written anew after every traversal.
+// The files sweep.json and sweep.csv of a sweep, written anew after every traversal.
 #pragma once
 
 #include <string>
@@ -10,24 +10,24 @@ namespace psf::study {
 
 class SweepFile {
  public:
-  // What is fixed: see study_file.h.
+  // The parts that are the same for all rows; study_file.h makes them.
   struct About {
     std::string version;
     Json input, reference, metrics;
   };
-  // With `resume` takes over the rows that sweep.json has. Throws Error{usage} where the folder has
-  // one and it is not resumed, Error{bad_input} where that is of another dump, reference or
+  // With `resume` it takes over the rows of an existing sweep.json. Throws Error{usage} where there
+  // is a sweep.json and `resume` is false, Error{bad_input} where it has another dump, reference or
   // metrics.
   SweepFile(std::string folder, About about, bool resume);
 
   [[nodiscard]] bool has(const filter::Parameters& parameters) const;
   [[nodiscard]] bool has_unfiltered() const { return !json_["unfiltered"].is_null(); }
-  // "0001", of the next row.
+  // The id of the next row, such as "0001".
   [[nodiscard]] std::string next_id() const;
-  // Of the row that comes behind so many others.
+  // The id of the row that follows `rows` others.
   [[nodiscard]] static std::string id(std::size_t rows);
 
-  // `picture`: a name in the folder, or empty.
+  // Adds a row. `picture`: a file name in the folder, or empty.
   void add(const SweepRow& row, std::span<const Metric> metrics, const std::string& picture);
   void set_unfiltered(const Metrics& values, std::span<const Metric> metrics,
                       const std::string& picture);

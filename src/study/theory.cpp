@@ -20,7 +20,7 @@ double share_right(double s) {
 Theory theory(const Dump& dump, const filter::Parameters& parameters, std::uint64_t n) {
   const filter::Blocks blocks(parameters.block, dump.pass_bounds(), 0, n);
   struct Part {
-    double share, r;  // of the paths
+    double share, r;  // a block's share of the paths, and its radius
   };
   std::vector<Part> parts;
   double largest = 0, bias = 0, variance = 0;

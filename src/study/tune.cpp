@@ -31,14 +31,14 @@ class Tiles {
     values_[pixel / width_ / kTile * columns_ + pixel % width_ / kTile] += value;
     sum_ += value;
   }
-  // Of a picture of the same size.
+  // Adds the sums of another picture of the same size.
   void add(const Tiles& others) {
     for (std::size_t k = 0; k < values_.size(); ++k) values_[k] += others.values_[k];
     sum_ += others.sum_;
   }
   [[nodiscard]] double sum() const { return sum_; }
   [[nodiscard]] double standard_error() const { return standard_error_beyond(1, Tiles()); }
-  // Standard error of `factor` times the sum of these minus that of others; one tile has none.
+  // The standard error of `factor` times this sum minus that of `others`; infinite for one tile.
   [[nodiscard]] double standard_error_beyond(double factor, const Tiles& others) const {
     const auto count = static_cast<double>(values_.size());
     double sum = 0, squares = 0;
@@ -145,7 +145,7 @@ class Tuner {
     if (done_ == 0) correlate(unfiltered, filtered(best));
   }
 
-  // Of the paths, how many are in each part.
+  // Sets shares_ to the share of the paths that each part has.
   void set_shares(const filter::Parameters& parameters) {
     const filter::Blocks blocks = blocks_of(parameters);
     shares_.assign(parts_, 0);
@@ -187,7 +187,7 @@ class Tuner {
     std::size_t pixel;
     int c;
     std::size_t i, j;
-    double weight;  // of its square, over pixels, colours and pairs
+    double weight;  // weight of a square in the mean over pixels, colours and pairs
     double shares;  // 1 / (1 / a_i + 1 / a_j)
 
     [[nodiscard]] double of_i(const Parts& parts) const { return double{parts[i][pixel][c]}; }
@@ -306,11 +306,11 @@ class Tuner {
   const Tune& t_;
   std::size_t width_ = 0, height_ = 0;
   std::size_t parts_ = kParts;
-  std::vector<double> shares_;      // of a part
+  std::vector<double> shares_;      // by part: its share of the paths
   Picture guess_;                   // g
-  std::vector<Tiles> tiles_;        // of a row's bias_sq + variance
-  std::vector<Tiles> covariances_;  // of a row: twice the covariance of f and u
-  Tiles u_tiles_;                   // of the variance of u; then of all that u adds to the errors
+  std::vector<Tiles> tiles_;        // by row: bias_sq + variance
+  std::vector<Tiles> covariances_;  // by row: twice the covariance of f and u
+  Tiles u_tiles_;                   // the variance of u; later all that u adds to the errors
   std::vector<Traversal> traversals_;
   std::uint64_t done_ = 0;  // traversals
   Tuning tuning_;

@@ -15,39 +15,42 @@
 
 namespace psf::study {
 
-// Estimates of relMSE and its parts, of the picture that all passes give; squares are divided by
-// g^2 + epsilon, where g stands for the reference: median_around() of the picture without filter,
-// which is the same for all sets and which none can raise. With a filtered picture as g what a set
-// smears would make its own relative error seem small.
+// Estimates of relMSE and its parts for the picture that all passes give. Squares are divided by
+// g^2 + epsilon, where g replaces the reference: the median_around() of the picture without filter.
+// This is the same for all sets, and no set can raise it. With a filtered picture as g, a set that
+// blurs bright light into dark places would make its own relative error seem small.
 struct TuneRow {
   filter::Parameters parameters;
   double error = 0;           // bias_sq + variance + u_variance + u_covariance - constant
-  double standard_error = 0;  // of bias_sq + variance
-  // Means over pairs of parts: of (F_A - A) (F_B - B), whose expected value is bias^2 because parts
-  // are independent; of (f_A - f_B)^2 / (1 / a + 1 / b), a and b the parts' shares of the paths.
-  // f is F without u, whose noise no set changes.
+  double standard_error = 0;  // standard error of bias_sq + variance
+  // Means over pairs of parts. bias_sq is the mean of (F_A - A) (F_B - B), whose expected value is
+  // bias^2 because parts are independent. variance is the mean of (f_A - f_B)^2 / (1 / a + 1 / b),
+  // where a and b are the parts' shares of the paths, and f is F without u, whose noise no set
+  // changes.
   double bias_sq = 0, variance = 0;
-  // How many standard errors of the difference this row's error lies above the least one.
+  // The difference of this row's error and the least error, in standard errors of the difference.
   double distance = 0;
-  // Whether its error may be less than that of the choice over 1 + kTolerance.
+  // Whether this row's error may be less than the error of the choice over 1 + kTolerance.
   bool may_be_better = false;
   double neighbors = 0;
 };
 
 struct Tuning {
   std::vector<TuneRow> rows;  // in the order of the sets
-  std::size_t best = 0;       // the choice: the row of the least error
-  std::size_t parts = 0;      // that were compared
+  std::size_t best = 0;       // the choice: number of the row with the least error
+  std::size_t parts = 0;      // number of parts that were compared
   double unfiltered = 0;      // relMSE of the unfiltered picture
   // What u adds to every error: its variance, and twice its covariance with f, which is below 0
-  // where they make up for each other. The covariance is that of the choice: it comes from alpha,
-  // which no set changes, so it is nearly the same for all sets. So neither ranks them.
+  // where u and f compensate each other. The covariance is that of the choice; it comes from alpha,
+  // which no set changes, so it is nearly the same for all sets. Neither changes the order of the
+  // sets.
   double u_variance = 0, u_covariance = 0;
-  // Of the unfiltered picture, of the paths that the first set's `sources` chooses; a path is left
-  // out where u, alpha, x or c is not finite, whatever else the sets would leave out.
+  // The noise of the unfiltered picture, for the paths that the first set's `sources` chooses.
+  // Paths where u, alpha, x or c is not finite are left out, whatever else the sets would leave
+  // out.
   NoiseShare noise;
-  // The least bias_sq where it is below 0, else 0: parts of one low-discrepancy sequence make up
-  // for each other, so that their noise correlates and every bias_sq is off by this much.
+  // The least bias_sq where it is below 0, else 0. Parts of one low-discrepancy sequence compensate
+  // each other, so that their noise correlates and every bias_sq is off by this much.
   double constant = 0;
   // Correlation of the noise of two parts at a pixel: 0 where they are independent.
   double correlation = 0;
@@ -60,17 +63,18 @@ struct Tune {
   PassSelection passes;
   std::size_t camera = 0;
   double epsilon = 1e-2;
-  std::optional<std::uint64_t> max_memory;  // bytes; the noise, read last, takes less than the rest
-  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress;  // paths, read again
+  std::optional<std::uint64_t> max_memory;                                   // limit in bytes
+  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress;  // in paths read
 };
 
-// Blocks go to four parts in turn, or to two where a set has fewer than four, filtered as the whole
-// run filters them: F, and A of the same paths without filter. Throws what filter_many() throws;
-// Error{usage} where a set has one block alone.
+// Estimates the error of each set. The blocks, filtered as in the whole run, go to four parts in
+// turn, or to two parts where a set has fewer than four blocks. Each part gives a filtered picture
+// F, and the picture A of the same paths without filter. Throws Error{usage} where a set has only
+// one block, and what filter_many() throws.
 [[nodiscard]] Tuning tune(const Dump& dump, const Tune& tune);
 
-// A choice is good where no set's error is less than its own over 1 + kTolerance, and known to be
-// good where that holds by kSure standard errors for every set.
+// A choice is good where no set's error is below the choice's error over 1 + kTolerance. It is
+// known to be good where this holds by kSure standard errors for every set.
 inline constexpr double kTolerance = 0.15, kSure = 2;
 
 }  // namespace psf::study

@@ -1,4 +1,4 @@
-// Sets of parameters that differ in r0 and delta alone share a traversal.
+// Groups sets of parameters that differ only in r0 and delta, so that they share a traversal.
 #pragma once
 
 #include <cstddef>
@@ -12,12 +12,12 @@
 namespace psf::study {
 
 struct VariantGroup {
-  filter::Parameters parameters;      // of the first; the radius is replaced by each of `radii`
-  std::vector<filter::Radius> radii;  // of one basis and count
-  std::vector<std::size_t> rows;      // which of the sets each radius is
+  filter::Parameters parameters;      // those of the first set; `radii` replace their radius
+  std::vector<filter::Radius> radii;  // all with the same basis and count
+  std::vector<std::size_t> rows;      // for each radius the number of its set
 };
 
-// In the order of the first of each group.
+// Groups the sets; the groups are in the order of their first sets.
 [[nodiscard]] std::vector<VariantGroup> group_variants(std::span<const filter::Parameters> sets);
 
 // Radii [first, first + count) of a group, which must outlive it.
@@ -25,16 +25,16 @@ struct Traversal {
   const VariantGroup* group;
   std::size_t first, count;
 
-  // The set that radius k of the traversal is of.
+  // The number of the set to which radius k of the traversal belongs.
   [[nodiscard]] std::size_t row(std::size_t k) const { return group->rows[first + k]; }
 };
 
-// Group after group, at most at_once(group) of its radii together.
+// Splits the groups, one after the other, into traversals of at most at_once(group) radii.
 [[nodiscard]] std::vector<Traversal> split(
     std::span<const VariantGroup> groups,
     const std::function<std::size_t(const VariantGroup&)>& at_once);
 
-// The run of a traversal; passes and limits are left to the caller.
+// The run of a traversal; the caller sets passes and limits.
 [[nodiscard]] ManyRun run_of(const Traversal& traversal);
 
 }  // namespace psf::study

@@ -50,7 +50,7 @@ TEST_CASE("every name of a file is known for it") {
     CHECK(refused({}, {folder / "a", "", folder / name}));
     CHECK_FALSE(refused({folder / name}, {folder / "other"}));
   }
-  // Of files that are not there, too, and of folders that are not.
+  // The same holds for files and folders that do not exist.
   for (const auto& [one, other] :
        {std::pair{"missing", "./missing"}, std::pair{"missing", "dangling"},
         std::pair{"sub/new", "folder-link/new"}, std::pair{"sub/new", "sub/deep/../new"},

@@ -23,7 +23,7 @@ class Random {
   explicit Random(std::uint32_t seed) : engine_(seed) {}
   std::uint32_t below(std::size_t n) { return static_cast<std::uint32_t>(engine_() % n); }
   bool one_in(std::size_t n) { return below(n) == 0; }
-  // Of a few eighths, where ties are many, or any.
+  // A multiple of 1/8, so that there are many ties, or any number.
   float value() {
     return one_in(2) ? static_cast<float>(below(9)) / 8 - 0.5f
                      : std::uniform_real_distribution<float>(-0.5f, 0.5f)(engine_);

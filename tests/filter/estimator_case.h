@@ -15,7 +15,7 @@ struct EstimatorRun {
   std::vector<filter::CameraView> cameras = {{30, 30, 0.05}};
   double n = 1;
   std::uint64_t first_path = 0;
-  double passes = 1;  // of the block
+  double passes = 1;  // number of passes of the block
 
   explicit EstimatorRun(filter::Estimator estimator, double r0 = 0.3) {
     parameters.estimator = estimator;

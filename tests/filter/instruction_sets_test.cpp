@@ -18,8 +18,8 @@ using filter::engine::instruction_sets;
 using filter::engine::InstructionSetLimit;
 using tests::EngineCase;
 
-// Contributions that cancel each other but for a rest, which in double is another for every order
-// of the sum.
+// Contributions that cancel each other except for a rest, which in double depends on the order of
+// the sum.
 EngineCase noisy_case(std::size_t count, unsigned terms, float r) {
   EngineCase c(count, terms + 1, terms % 2 == 0 ? 0.3 : 0);
   const std::vector<Rgb> small = tests::random_records(count, 3, 0, c.cameras).contribution;

@@ -93,7 +93,7 @@ TEST_CASE("A miss is no bad value") {
 
 TEST_CASE(
     "Where hit distances are compared, what lacks them is left out with its share of the sky") {
-  // Of 80 paths half meet the sky; one in four is shaded, of either half.
+  // Half of 80 paths meet the sky; one in four of either half is shaded.
   RecordSet set(80);
   for (std::size_t i = 0; i < set.size(); ++i) {
     const bool vertex = i % 2 == 0, shaded = i / 2 % 4 == 0;

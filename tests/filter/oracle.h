@@ -48,7 +48,7 @@ class Oracle {
         first_path_(first_path),
         samples_per_pixel_(samples_per_pixel) {}
 
-  // Of records [first, last), which are one block.
+  // The result for the records [first, last), which are one block.
   [[nodiscard]] OracleResult run(std::size_t first, std::size_t last) const {
     const std::size_t count = s_.size();
     OracleResult r;

@@ -79,7 +79,8 @@ TEST_CASE("Without any source in the block its queries are left out and counted"
   CHECK(result.roles[2] == filter::Role::unchosen);
 }
 
-TEST_CASE("--sources 1/K keeps about a K-th, spread over the picture and over the passes") {
+TEST_CASE(
+    "A K-th of the sources stays with --sources 1/K, spread over the picture and over the passes") {
   tests::RecordSet set(64 * 64);
   for (std::uint32_t i = 0; i < set.size(); ++i) set.pixel[i] = i;
   for (const std::uint32_t k : {2u, 3u, 4u, 16u}) {

@@ -4,10 +4,10 @@
 #include <random>
 
 #include "catch.h"
+#include "core/error.h"
 #include "file_bytes.h"
 #include "formats/chunk.h"
 #include "formats/crc.h"
-#include "formats/error.h"
 #include "formats/layout.h"
 
 using namespace psf;

@@ -4,11 +4,11 @@
 #include <optional>
 
 #include "catch.h"
+#include "core/error.h"
 #include "failing.h"
 #include "file_bytes.h"
 #include "formats/check.h"
 #include "formats/concatenate.h"
-#include "formats/error.h"
 #include "formats/metadata.h"
 #include "formats/reader.h"
 #include "numbered.h"

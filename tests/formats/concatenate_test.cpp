@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
+#include "core/error.h"
 #include "failing.h"
 #include "file_bytes.h"
 #include "formats/check.h"
-#include "formats/error.h"
 #include "formats/reader.h"
 #include "numbered.h"
 

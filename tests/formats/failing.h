@@ -8,8 +8,8 @@
 namespace psf::test {
 
 struct Calls {
-  // Of pwritev, fdatasync, rename, fsync and close of what is open to write: how many go well
-  // before one fails; negative: none fails.
+  // How many calls of pwritev, fdatasync, rename, fsync, and close of a file open for writing
+  // succeed before one fails; negative: none fails.
   long left = -1;
   bool tear = false;        // a write that fails writes half first
   int changes = 0;          // calls of these so far

@@ -5,9 +5,9 @@
 #include <random>
 
 #include "catch.h"
+#include "core/error.h"
 #include "file_bytes.h"
 #include "formats/check.h"
-#include "formats/error.h"
 #include "formats/reader.h"
 #include "golden.h"
 

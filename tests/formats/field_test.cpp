@@ -6,10 +6,10 @@
 #include <ctime>
 
 #include "catch.h"
+#include "core/error.h"
 #include "failing.h"
 #include "file_bytes.h"
 #include "formats/check.h"
-#include "formats/error.h"
 #include "formats/reader.h"
 #include "formats/recover.h"
 #include "golden.h"
@@ -119,7 +119,7 @@ void mend_index(test::Bytes& bytes, std::size_t frame) {
 namespace {
 
 struct Cost {
-  double seconds = 0;            // of processor time
+  double seconds = 0;            // processor time
   std::uint64_t bytes_read = 0;  // from the file
 };
 

@@ -43,7 +43,7 @@ struct FramePlace {
   std::string type;
   std::size_t offset, length;
 };
-// Of a file without faults.
+// The places of the frames in a file without faults.
 [[nodiscard]] std::vector<FramePlace> frames(const Bytes& bytes);
 [[nodiscard]] std::vector<FramePlace> frames(const Bytes& bytes, const std::string& type);
 

@@ -14,9 +14,9 @@
 #include <thread>
 
 #include "catch.h"
+#include "core/error.h"
 #include "file_bytes.h"
 #include "formats/check.h"
-#include "formats/error.h"
 #include "formats/reader.h"
 #include "numbered.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "catch.h"
-#include "formats/error.h"
+#include "core/error.h"
 
 using namespace psf;
 using namespace psf::formats;

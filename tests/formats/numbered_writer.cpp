@@ -13,7 +13,7 @@
 #include <random>
 #include <string>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "numbered.h"
 
 using namespace psf;

@@ -5,8 +5,8 @@
 #include <map>
 
 #include "catch.h"
+#include "core/error.h"
 #include "file_bytes.h"
-#include "formats/error.h"
 #include "formats/reader.h"
 #include "golden.h"
 #include "numbered.h"

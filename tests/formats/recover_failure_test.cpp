@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "catch.h"
+#include "core/error.h"
 #include "failing.h"
 #include "file_bytes.h"
-#include "formats/error.h"
 #include "formats/recover.h"
 #include "numbered.h"
 

@@ -4,9 +4,9 @@
 #include <filesystem>
 
 #include "catch.h"
+#include "core/error.h"
 #include "failing.h"
 #include "file_bytes.h"
-#include "formats/error.h"
 #include "formats/reader.h"
 #include "numbered.h"
 

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "catch.h"
+#include "core/error.h"
 #include "file_bytes.h"
-#include "formats/error.h"
 #include "formats/file.h"
 #include "formats/metadata.h"
 #include "formats/reader.h"

@@ -2,10 +2,10 @@
 #include <filesystem>
 
 #include "catch.h"
+#include "core/error.h"
 #include "failing.h"
 #include "file_bytes.h"
 #include "formats/check.h"
-#include "formats/error.h"
 #include "formats/file.h"
 #include "formats/reader.h"
 #include "numbered.h"

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "catch.h"
+#include "core/error.h"
 #include "file_bytes.h"
-#include "formats/error.h"
 #include "formats/quantize.h"
 #include "formats/reader.h"
 #include "formats/writer.h"

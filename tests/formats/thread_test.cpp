@@ -4,8 +4,8 @@
 #include <thread>
 
 #include "catch.h"
+#include "core/error.h"
 #include "file_bytes.h"
-#include "formats/error.h"
 #include "formats/reader.h"
 #include "golden.h"
 

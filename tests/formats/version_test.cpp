@@ -2,10 +2,10 @@
 #include <filesystem>
 
 #include "catch.h"
+#include "core/error.h"
 #include "file_bytes.h"
 #include "formats/check.h"
 #include "formats/concatenate.h"
-#include "formats/error.h"
 #include "formats/reader.h"
 #include "formats/recover.h"
 #include "golden.h"

@@ -85,7 +85,7 @@ inline Rgb pixel(const PathRecord& r) {
 }
 
 struct Estimate {
-  double mean, error;  // of the green channel; standard error of the mean
+  double mean, error;  // mean of the green channel, and its standard error
 };
 
 // Mean over batches that are randomised independently; their spread is the error, whatever the

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "catch.h"
-#include "formats/error.h"
+#include "core/error.h"
 
 using namespace psf;
 using namespace psf::render;
@@ -106,7 +106,7 @@ TEST_CASE("a lens moves the origin by at most its radius and keeps the plane of 
 }
 
 TEST_CASE("the map to the disk keeps areas") {
-  // Of a fine grid, the share that lands within radius r is r^2, and each quadrant gets a quarter.
+  // The share of a fine grid that lands within radius r is r^2, and each quadrant gets a quarter.
   constexpr int kSize = 400;
   int inside = 0;
   int quadrant = 0;

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "analytic_support.h"
-#include "formats/error.h"
+#include "core/error.h"
 
 using namespace psf;
 using namespace psf::render;

@@ -84,7 +84,7 @@ TEST_CASE("an error of the JSON scene names file and JSON path", "[load][json]")
   CHECK(message_of(R"({"cameras": [{"eye": [0,0,1], "target": [0,0,0], "fov": 180}]})") ==
         "s.json:1: /cameras/0/fov: expected a number of degrees in (0, 180), got 180");
   CHECK(message_of(R"({"cameras": [{"eye": [0,0,1], "target": [0,0,0], "size": [0, 10]}]})") ==
-        "s.json:1: /cameras/0/size/0: expected a whole number from 1 to 65536, got 0");
+        "s.json:1: /cameras/0/size/0: expected a whole number from 1 to 65535, got 0");
   CHECK(message_of(R"({"lights": [{"kind": "point", "position": [0,0,0], "intensity": -1}]})") ==
         "s.json:1: /lights/0/intensity: expected a number >= 0, got -1");
   CHECK(message_of("[1, 2]") == "s.json:1: /: expected an object, got [1,2]");

@@ -19,7 +19,7 @@ Scene mtl_scene(const std::string& mtl) {
   folder.write("-s.ppm", ppm(1, "255 255 255"));
   return load_scene(folder.write("s.obj", kObj));
 }
-// Of the statements of one material.
+// The material that these statements define.
 Material material_of(const std::string& statements) {
   return mtl_scene("newmtl m\n" + statements).materials.at(0);
 }

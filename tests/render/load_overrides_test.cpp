@@ -74,9 +74,11 @@ TEST_CASE("senseless values of the command line are errors of usage", "[load][ov
   o = {};
   o.size = Vec2(0, 10);
   CHECK(failure(o).code == ErrorCode::usage);
-  CHECK(failure(o).message == "--size 0x10: expected whole numbers of pixels, at least 1x1");
+  CHECK(failure(o).message == "--size 0x10: expected whole numbers of pixels from 1 to 65535");
   o = {};
-  o.size = Vec2(65536, 65536);
+  o.size = Vec2(65536, 10);
+  CHECK(failure(o).code == ErrorCode::usage);
+  o.size = Vec2(65535, 65535);
   CHECK(failure(o).code == ErrorCode::limit);
   o = {};
   o.up = Vec3(0, 0, 0);

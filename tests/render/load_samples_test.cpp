@@ -8,6 +8,7 @@
 
 #include "catch.h"
 #include "load_support.h"
+#include "shared_scenes.h"
 
 namespace psf::render {
 namespace {
@@ -91,14 +92,8 @@ TEST_CASE("a sample scene with a character changed loads or is an error of one l
 }
 
 TEST_CASE("Sponza loads with its textures", "[load][samples]") {
-  const char* shared = std::getenv("PSF_SHARED_SCENES");
-  const fs::path folder = shared ? fs::path(shared) : fs::path(PSF_SOURCE_DIR) / "../shared/scenes";
-  const fs::path path = folder / "sponza/sponza.obj";
-  if (!fs::exists(path)) {
-    WARN("skipped: " << path
-                     << " is not there; PSF_SHARED_SCENES names the folder that holds sponza/");
-    return;
-  }
+  const fs::path path = fs::path(tests::shared_scenes()) / "sponza/sponza.obj";
+  if (!fs::exists(path)) SKIP("no sponza/ in a folder of shared scenes; name it in PSF_SCENES");
   const Scene scene = load_scene(path.string());
   std::size_t triangles = 0, textured = 0;
   Imath::Box3f box;

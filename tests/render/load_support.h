@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "render/load.h"
 
 namespace psf::render {

@@ -66,7 +66,7 @@ Outline reversed(Outline p) {
 }
 
 struct Cut {
-  double area = 0;            // of all triangles, each positive
+  double area = 0;            // sum of the areas of all triangles, each positive
   std::vector<Outline> flat;  // the triangles back in the plane
   std::size_t backward = 0;   // triangles that are wound against the face
   std::size_t crossings = 0;

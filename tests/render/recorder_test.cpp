@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "catch.h"
-#include "formats/error.h"
+#include "core/error.h"
 
 using namespace psf;
 using namespace psf::render;

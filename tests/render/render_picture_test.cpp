@@ -47,7 +47,7 @@ TEST_CASE("global enumeration gives every pixel its share, evenly in every pass"
   // Independent points would leave pixels of 3 and of 30; these stay near 16.
   for (const int c : count) CHECK(std::abs(c - 16) <= 4);
   for (std::size_t pass = 0; pass < 16; ++pass) {
-    std::vector<int> tile(6 * 4, 0);  // of 16 x 16 pixels, 256 paths each
+    std::vector<int> tile(6 * 4, 0);  // tiles of 16 x 16 pixels, with about 256 paths each
     for (std::size_t i = pass * kLeft; i < (pass + 1) * kLeft; ++i) {
       ++tile[pixel[i] % 96 / 16 + 6 * (pixel[i] / 96 / 16)];
     }

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "catch.h"
-#include "formats/error.h"
+#include "core/error.h"
 #include "formats/metadata.h"
 #include "render/camera.h"
 #include "render_dump.h"

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "catch.h"
-#include "formats/error.h"
+#include "core/error.h"
 #include "render_dump.h"
 
 using namespace psf;

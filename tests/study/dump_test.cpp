@@ -103,8 +103,7 @@ TEST_CASE("A missing channel is named with the option that needs it") {
   const auto expected = [](const std::string& channel, const std::string& by,
                            const std::string& instead) {
     return channel + ".pvb: has no channel " + channel + ", which " + by +
-           " needs; render a dump that has it" +
-           (instead.empty() ? "" : ", or " + instead);
+           " needs; render a dump that has it" + (instead.empty() ? "" : ", or " + instead);
   };
   using Case = std::array<const char*, 3>;
   for (const auto& [channel, by, instead] :
@@ -113,12 +112,9 @@ TEST_CASE("A missing channel is named with the option that needs it") {
         Case{"normal", "--normal", "give --normal off"},
         Case{"reflectance", "--reflectance", "give --reflectance off"},
         Case{"direction", "--direction", "give --direction off"},
-        Case{"material", "--material", "leave --material out"},
-        Case{"position", "the filter", ""},
-        Case{"contribution", "the filter", ""},
-        Case{"throughput", "the filter", ""},
-        Case{"pixel", "the filter", ""},
-        Case{"camera", "a dump of several cameras", ""},
+        Case{"material", "--material", "leave --material out"}, Case{"position", "the filter", ""},
+        Case{"contribution", "the filter", ""}, Case{"throughput", "the filter", ""},
+        Case{"pixel", "the filter", ""}, Case{"camera", "a dump of several cameras", ""},
         Case{"distance", "a radius that depends on the distance", ""}}) {
     CHECK(message(channel, all_terms()) == expected(channel, by, instead));
   }
@@ -126,7 +122,7 @@ TEST_CASE("A missing channel is named with the option that needs it") {
   none.weights = filter::WeightTerms::none();
   CHECK(message("normal", none) == "none");
   none.demodulate = true;
-  CHECK(message("reflectance", none) == 
+  CHECK(message("reflectance", none) ==
         expected("reflectance", "--demodulate", "leave --demodulate out"));
 }
 

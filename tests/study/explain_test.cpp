@@ -42,7 +42,7 @@ std::vector<std::pair<std::string, FilterRun>> ways() {
 
 constexpr std::uint32_t kStep = 7;  // pixels
 
-// Of pixels: how many numbers are not the picture's, and what there was to see.
+// Counts, over pixels, the numbers that differ from the picture's, and the cases that were seen.
 struct Agreement {
   std::size_t wrong = 0, orphans = 0, all_shaded = 0;
 

@@ -163,8 +163,7 @@ TEST_CASE("SSIM counts the pixels whose window lies in the picture, or all where
 
 TEST_CASE("SSIM and FLIP are those of numpy with whole kernels, pixel by pixel") {
   if (std::system((kPython + " -c 'import numpy' 2>/dev/null").c_str()) != 0) {
-    WARN("left out: Debian's python3 has no numpy");
-    return;
+    SKIP("Debian's python3 has no numpy");
   }
   struct Setting {
     float exposure;

@@ -1,4 +1,4 @@
-#!/ usr / bin / python3
+#!/usr/bin/python3
 """SSIM and FLIP from their papers, with numpy alone and whole two-dimensional kernels in double.
 
 metrics_oracle.py ssim|flip WIDTH EXPOSURE PIXELS_PER_DEGREE PICTURE REFERENCE OUT

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "catch.h"
+#include "core/error.h"
 #include "core/parallel.h"
-#include "formats/error.h"
 #include "metric_pictures.h"
 #include "study/metrics/reference.h"
 
@@ -134,7 +134,7 @@ TEST_CASE("trimming leaves out the largest errors, of each metric its own") {
   CHECK(metrics[Metric::rel_mse] == Approx(relative / 90).epsilon(1e-9));
   CHECK(metrics[Metric::psnr] == Approx(-10 * std::log10(kept / 90)));
 
-  // Of equal errors it makes no difference which are left out.
+  // Where errors are equal, it makes no difference which are left out.
   const std::vector<Rgb> flat(100, Rgb(1)), above(100, Rgb(3));
   CHECK(Reference(flat, 10).errors(above).mean(choice)[Metric::mse] == 4);
 }

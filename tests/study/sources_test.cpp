@@ -26,7 +26,7 @@ FilterRun run_with(std::uint32_t sources, filter::Estimator estimator) {
   return run;
 }
 
-// Of a pixel's paths the share of its column meets a surface, from none to all.
+// The share of a pixel's paths that meets a surface; it grows with the column from none to all.
 double share_of_surface(std::size_t pixel) {
   return static_cast<double>(pixel % kSide) / (kSide - 1);
 }
@@ -63,7 +63,7 @@ void shade_one_in_three(RecordSet& set, bool flags_say_so) {
   }
 }
 
-// Of each pixel, over many renders: the mean of what `picture` gives, less the truth, in standard
+// For each pixel the mean over many renders of what `picture` returns, minus the truth, in standard
 // errors.
 struct Deviations {
   std::array<double, kPixels> off{}, relative{};
@@ -95,7 +95,7 @@ Deviations deviations(const Picture& picture) {
   return result;
 }
 
-// Of normal deviations of 64 pixels one in 3,000 sets has one of more than 4.4.
+// Among normal deviations of 64 pixels, a set in 3,000 has one of more than 4.4.
 constexpr double kMost = 4.4;
 
 std::vector<float> unfiltered(const std::string& path, const FilterRun& run) {

@@ -140,7 +140,8 @@ TEST_CASE("The noise of u is told apart and decides nothing") {
   const study::Tuning without = tune_square(folder / "a.pvb", square(truth, none), sets);
   const study::Tuning with = tune_square(folder / "b.pvb", square(truth, fireflies), sets);
   CHECK(without.u_variance == 0);
-  // Of 1 in 997 paths, 8 a pixel; 1 / (g^2 + epsilon) is between 1/4 and 1.
+  // The variance of 1 bright path in 997, with kPasses paths per pixel; 1 / (g^2 + epsilon) is
+  // between 1/4 and 1.
   const double variance = 1e6 / 997 / kPasses;
   CHECK(with.u_variance > variance / 4);
   CHECK(with.u_variance < variance);

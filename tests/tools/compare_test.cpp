@@ -67,7 +67,7 @@ TEST_CASE("compare prints every metric and what it depends on") {
   CHECK(run(command + " --epsilon 1").out.starts_with("relMSE 0.125 "));
 }
 
-TEST_CASE("--max and --min turn a metric into an exit code") {
+TEST_CASE("A metric becomes an exit code by --max and --min") {
   const TempFolder folder;
   const std::string a = folder / "a.exr", b = folder / "b.exr";
   write_grey(a, 4, 1.5f);
@@ -147,7 +147,7 @@ TEST_CASE("error pictures hold the metric of every pixel, as values or colours o
   psf::film::Image image = grey(4, 1);
   for (psf::film::Layer& layer : image.layers) {
     layer.values[1] = 3;  // an error of 4
-    layer.values[2] = 2;  // of 1
+    layer.values[2] = 2;  // an error of 1
     layer.values[7] = NAN;
   }
   psf::film::write_exr(a, image);
@@ -181,7 +181,7 @@ TEST_CASE("error pictures hold the metric of every pixel, as values or colours o
   CHECK(color(7) == std::vector<int>{0, 255, 255});
 }
 
-TEST_CASE("--layer compares a layer of the picture, with or without its dot") {
+TEST_CASE("A layer of the picture is compared by --layer, with or without its dot") {
   const TempFolder folder;
   const std::string a = folder / "a.exr", b = folder / "b.exr";
   psf::film::Image image = grey(4, 1.5f);
@@ -226,7 +226,7 @@ TEST_CASE("layers of other programs' pictures are found, or listed and named") {
   CHECK(run("psf compare " + b + " " + c + " --layer diffuse --max 0").code == 0);
   CHECK(run("psf compare " + b + " " + b + " --layer beauty --reference-layer diffuse --max 0")
             .code == 1);
-  // Of the same name, unless another is given.
+  // The layer of the reference has the same name, unless another is given.
   CHECK(run("psf compare " + b + " " + b + " --layer diffuse --max 0").code == 0);
 }
 

@@ -194,7 +194,7 @@ TEST_CASE("Tables have the rows asked for; with --all every path has its vertex"
   CHECK(lines(few) < lines(more));
   CHECK(lines(more) <= 50);
   CHECK(lines(all) > 60);
-  CHECK(few.find("  and 2 more\n") != std::string::npos);  // of 4 paths
+  CHECK(few.find("  and 2 more\n") != std::string::npos);  // the pixel has 4 paths
   CHECK(all.find(" more\n") == std::string::npos);
   CHECK(all.find("    x (") != std::string::npos);
   CHECK(more.find("    x (") == std::string::npos);

@@ -148,8 +148,7 @@ TEST_CASE("arrays have the header and the bytes that numpy wants") {
 
 TEST_CASE("numpy loads the arrays and finds the values that pvb.py finds") {
   if (std::system("/usr/bin/python3 -c 'import numpy, zstandard' 2>/dev/null") != 0) {
-    WARN("left out: Debian's python3 has no numpy or no zstandard");
-    return;
+    SKIP("Debian's python3 has no numpy or no zstandard");
   }
   const TempFolder folder;
   const Sample sample(folder / "in.pvb");

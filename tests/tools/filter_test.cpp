@@ -155,7 +155,7 @@ TEST_CASE("a block of 2^24 records is filtered within 16 GB, twice the passes in
 }
 #endif
 
-TEST_CASE("--layers chooses what an EXR holds beside the picture, whose pixels stay") {
+TEST_CASE("What an EXR holds beside the picture is what --layers chooses, and the pixels stay") {
   const Filtered work;
   work.render("a.pvb", "--size 24x16 --passes 2");
   const auto channels = [&](const std::string& options) {

@@ -10,7 +10,7 @@ using namespace psf::tests;
 
 namespace {
 
-constexpr rlim_t kCpuSeconds = 60;  // of a verb that takes one at most
+constexpr rlim_t kCpuSeconds = 60;  // limit for a verb that takes at most one second
 
 bool has_partial(const std::vector<std::string>& names) {
   return std::any_of(names.begin(), names.end(), [](const std::string& name) {

@@ -7,10 +7,12 @@
 
 #include "catch.h"
 #include "command.h"
+#include "shared_scenes.h"
 
 namespace fs = std::filesystem;
 using psf::tests::Outcome;
 using psf::tests::run;
+using psf::tests::shared_scenes;
 using psf::tests::TempFolder;
 
 namespace {
@@ -41,14 +43,6 @@ double gain(const std::string& scene, const std::string& reference) {
   return relative_mse(before, reference) / relative_mse(after, reference);
 }
 
-// The folder of scenes that the project did not make; empty where there is none.
-std::string shared_scenes() {
-  const char* named = std::getenv("PSF_SCENES");
-  const fs::path folder =
-      named != nullptr ? fs::path(named) : fs::path(PSF_SOURCE_DIR) / "../shared/scenes";
-  return fs::is_directory(folder) ? folder.string() : "";
-}
-
 }  // namespace
 
 TEST_CASE("Cornell box: at most a fifteenth of the error is left") {
@@ -77,10 +71,7 @@ TEST_CASE("Glossy surfaces at the first hit: the filter does not lose to none") 
 
 TEST_CASE("Sponza with sky and sun: at most a fifth of the error is left", "[.][long]") {
   const std::string scenes = shared_scenes();
-  if (scenes.empty()) {
-    WARN("skipped: no folder of shared scenes; name it in PSF_SCENES");
-    return;
-  }
+  if (scenes.empty()) SKIP("no folder of shared scenes; name it in PSF_SCENES");
   const TempFolder folder;
   const std::string reference = folder / "reference.exr";
   const std::string scene =

@@ -77,7 +77,7 @@ TEST_CASE("A row of a sweep is what psf filter and psf compare give") {
       REQUIRE(values.size() == 7);
       for (const auto& [name, value] : values.items()) {
         INFO(picture << " " << name);
-        // Of the row's own picture to the last bit.
+        // The value is that of the row's own picture to the last bit.
         const double expected = value.get<double>(), got = row.at("metrics").at(name);
         if (own) CHECK(got == expected);
         CHECK(got == Approx(expected).epsilon(1e-3));

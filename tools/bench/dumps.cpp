@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
+#include "core/error.h"
 #include "formats/commit.h"
 #include "formats/crc.h"
-#include "formats/error.h"
 #include "formats/frame.h"
 #include "formats/head_frame.h"
 #include "formats/layout.h"

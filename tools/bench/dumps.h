@@ -1,5 +1,5 @@
-// The path-vertex buffers that are measured: made up, copied from a file in one codec, or mere
-// holes.
+// Makes the path-vertex buffers that are measured: synthetic, copied from a file in one codec, or
+// sparse.
 #pragma once
 
 #include <cstddef>
@@ -11,16 +11,17 @@
 
 namespace psf::bench {
 
-// A room seen by a pinhole camera in scanline order, noise in the colours: the channels that
-// psf-render writes, of about `records` records.
+// Writes about `records` records of a room seen by a pinhole camera, in scanline order, with noise
+// in the colours and the channels that psf-render writes.
 void write_synthetic(const std::string& path, std::size_t records, formats::Codec codec);
 
-// The first chunks of `from`, up to about `records` records, passes kept, in another codec.
+// Copies the first chunks of `from`, up to about `records` records, in another codec, with the same
+// passes.
 void write_copy(const formats::Reader& from, const std::string& path, std::size_t records,
                 formats::Codec codec);
 
-// A closed file of 50,000 chunks and more than 200 GB, of which only head, index and commit take
-// room on the disk. Throws Error{io} where the file system has no holes that large.
+// Writes a closed file of 50,000 chunks and more than 200 GB, of which only head, index and commit
+// take space on the disk. Throws Error{io} where the file system cannot have such large holes.
 void write_sparse(const std::string& path);
 
 }  // namespace psf::bench

@@ -13,11 +13,11 @@
 #include "bench/read_rows.h"
 #include "bench/write_rows.h"
 #include "cli.h"
+#include "core/error.h"
 #include "core/interrupt.h"
 #include "core/json_text.h"
 #include "core/parallel.h"
 #include "core/unfinished.h"
-#include "formats/error.h"
 #include "version.h"
 
 namespace psf::bench {

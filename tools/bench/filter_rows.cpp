@@ -49,7 +49,7 @@ void Agreement::add(const filter::Average& a, const filter::Average& b) {
 }
 
 std::vector<Row> agreement_rows(const Agreement& agreement) {
-  constexpr double kRounding = 1e-5;  // of sums in another order
+  constexpr double kRounding = 1e-5;  // rounding error of sums in another order
   return {figure("neighbors_differ", "records with other neighbours than plain FLANN's",
                  static_cast<double>(agreement.differing), 0),
           figure("c_bar_differs", "largest relative difference of an average", agreement.c_bar,

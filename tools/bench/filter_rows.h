@@ -1,5 +1,5 @@
-// The filter's rows: the fast engine over plain FLANN, threads over one, twice the passes over
-// once.
+// The rows about the filter: speed of the fast engine against plain FLANN, of several threads
+// against one, and of all passes against half of them.
 #pragma once
 
 #include <cstddef>
@@ -10,26 +10,26 @@
 
 namespace psf::bench {
 
-// Whether the two engines found the same; adds up over runs.
+// The differences between the results of two engines, over all runs.
 struct Agreement {
-  std::uint64_t differing = 0;  // records with another number of neighbours, or another role
+  std::uint64_t differing = 0;  // records whose number of neighbours or role differs
   double c_bar = 0;             // largest relative difference of a component
 
   void add(const filter::Average& a, const filter::Average& b);
 };
 [[nodiscard]] std::vector<Row> agreement_rows(const Agreement& agreement);
 
-// Time of plain / time of flann, one thread, in turn. The target is that of `wanted` neighbours, if
-// there is one. Adds a point for each.
+// Time of the plain engine / time of the fast one, on one thread, run in turn. The target is that
+// for `wanted` neighbours, if there is one. Adds a point for each engine.
 [[nodiscard]] Row speed_row(const Sample& sample, const Reach& reach, std::size_t wanted,
                             std::size_t repeat, Agreement& agreement, std::vector<Point>& points);
 
-// Time of one thread / time of `threads`, in turn.
+// Time of one thread / time of `threads` threads, run in turn.
 [[nodiscard]] Row threads_row(const Sample& sample, const Reach& reach, std::size_t threads,
                               std::size_t repeat);
 
-// One thread, a pass a block: time of an even number of passes / time of the first half of them.
-// The sample has at least two.
+// Time of an even number of passes / time of the first half of them, on one thread, with one pass
+// per block. The sample must have at least two passes.
 [[nodiscard]] Row passes_row(const Sample& sample, const Reach& reach, std::size_t repeat);
 
 }  // namespace psf::bench

@@ -50,7 +50,7 @@ Run run_filter(const Sample& sample, const Reach& reach, search::Kind kind) {
 std::optional<Reach> find_reach(const Sample& sample, double neighbors, double start) {
   constexpr int kMostSteps = 20;
   constexpr double kTolerance = 0.02;
-  constexpr double kSaturated = 0.1;  // of the slope of neighbours over radius, 2 on a surface
+  constexpr double kSaturated = 0.1;  // least slope of log neighbours over log r0; a surface has 2
   if (neighbors > static_cast<double>(sample.size())) return std::nullopt;
   Reach reach;
   double low = 0, high = std::numeric_limits<double>::infinity(), at_low = 0;

@@ -1,4 +1,4 @@
-// filter::average() on a sample, timed, and the radius that gives a wanted number of neighbours.
+// Times filter::average() on a sample, and finds the radius for a wanted number of neighbours.
 #pragma once
 
 #include <optional>
@@ -11,29 +11,29 @@
 
 namespace psf::bench {
 
-// A radius r0, and what it gives on a sample.
+// A radius r0, and the numbers of neighbours that it gives on a sample.
 struct Reach {
   double r0 = 0;
-  double neighbors = 0;  // averaged a record, itself included
+  double neighbors = 0;  // mean number of sources averaged per record, with itself
   double in_ball = 0;    // the same without weights
   std::vector<float> radius;
 };
 
 struct Run {
   filter::Average average;
-  double seconds = 0;  // of the whole call of filter::average(): index, search, weights and sums
+  double seconds = 0;  // time of the call of filter::average(): index, search, weights and sums
 };
 
 [[nodiscard]] Run run_filter(const Sample& sample, const Reach& reach, search::Kind kind);
 
-// The radius at which a record has `neighbors` of them in the mean, within 2%. `start`: r0 to try
-// first, 0 where none is known. Nothing where no radius gives so many.
+// The radius at which records have `neighbors` neighbours on average, within 2%; not set where no
+// radius gives so many. `start`: r0 to try first, 0 where none is known.
 [[nodiscard]] std::optional<Reach> find_reach(const Sample& sample, double neighbors,
                                               double start = 0);
 
 // One measured time of the filter.
 struct Point {
-  std::string series;  // "speed", or what grows: "neighbors", "records"
+  std::string series;  // "speed", or the quantity that grows: "neighbors", "records"
   std::string search;  // "flann", "plain"
   std::size_t records = 0;
   Reach reach;  // without the radii
@@ -43,7 +43,7 @@ struct Point {
 
 [[nodiscard]] nlohmann::ordered_json to_json(const std::vector<Point>& points);
 
-// What a point's time is for each of its records, and for each neighbour of each.
+// The time of a point per record, and per neighbour of a record, in nanoseconds.
 [[nodiscard]] double ns_per_record(const Point& point);
 [[nodiscard]] double ns_per_neighbor(const Point& point);
 

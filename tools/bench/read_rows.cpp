@@ -11,8 +11,8 @@
 #include <span>
 
 #include "bench/dumps.h"
+#include "core/error.h"
 #include "core/parallel.h"
-#include "formats/error.h"
 #include "formats/reader.h"
 
 namespace psf::bench {
@@ -51,7 +51,7 @@ class Job {
     }
   }
 
-  // Of raw files only: stored bytes are the values.
+  // Only for raw files, whose stored bytes are the values.
   void pread() {
     for (const Block& block : blocks_) {
       for (const auto& column : block.columns) {

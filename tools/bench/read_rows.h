@@ -1,4 +1,5 @@
-// Reading: raw columns against pread of the same bytes, zstd, some channels against all, opening.
+// The rows about reading: raw columns against pread of the same bytes, zstd, some channels against
+// all, and opening a file.
 #pragma once
 
 #include <cstddef>
@@ -9,12 +10,12 @@
 
 namespace psf::bench {
 
-// `raw` and `zstd` hold the same records. Their bytes are in the page cache from the first,
-// uncounted repetition on.
+// `raw` and `zstd` are files with the same records. The first repetition, which is not counted,
+// brings their bytes into the page cache.
 [[nodiscard]] std::vector<Row> read_rows(const std::string& raw, const std::string& zstd,
                                          std::size_t repeat);
 
-// Of a sparse file of more than 200 GB, made at `path`.
+// The time to open a sparse file of more than 200 GB, which is made at `path`.
 [[nodiscard]] Row open_row(const std::string& path, std::size_t repeat);
 
 }  // namespace psf::bench

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "formats/error.h"
+#include "core/error.h"
 
 namespace psf::bench {
 namespace {

@@ -1,4 +1,4 @@
-// Rows of a benchmark: a figure with its spread and its target, as a table and as JSON.
+// Rows of a benchmark, each a figure with its spread and its target, printed as a table or JSON.
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,7 @@ namespace psf::bench {
 struct Spread {
   double median = 0, min = 0, max = 0;
 };
-// Of at least one value.
+// The spread of at least one value.
 [[nodiscard]] Spread spread(std::vector<double> values);
 
 struct Target {
@@ -27,14 +27,14 @@ struct Target {
 
 struct Row {
   std::string name;  // for programs: "read_raw_1"
-  std::string what;  // for people
+  std::string what;  // description for people
   std::string unit;  // "x" for ratios, "%", "s", "GB/s"
   Spread value;
-  std::optional<Target> target;  // none: for information
-  std::string detail;            // what the figure was made from
+  std::optional<Target> target;  // not set: the row is for information
+  std::string detail;            // the numbers that the figure was computed from
 };
 
-// Seconds that a call takes, by the clock on the wall.
+// The seconds of real time that a call takes.
 template <class Call>
 [[nodiscard]] double seconds_of(const Call& call) {
   const auto start = std::chrono::steady_clock::now();

@@ -33,7 +33,7 @@ struct SweepOptions {
 
 constexpr Target kAtMost5{Target::Kind::at_most, 5};
 constexpr Target kSame{Target::Kind::at_most, 1e-5};
-constexpr int kSteps = 8;  // of r0, by the root of 2, and of delta, by 0.1
+constexpr int kSteps = 8;  // number of values of r0, by factors of sqrt(2), and of delta, by 0.1
 
 std::vector<filter::Radius> pairs(const filter::Radius& largest) {
   std::vector<filter::Radius> radii;

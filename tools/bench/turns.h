@@ -1,4 +1,4 @@
-// Two ways to do the same work, measured in turn.
+// Measures two ways to do the same work, in turn.
 #pragma once
 
 #include <fmt/format.h>
@@ -11,10 +11,11 @@
 
 namespace psf::bench {
 
-// A row is not measured again when its runs took so long, whatever --repeat says.
+// Where the runs of a row have taken this long, it is not measured again, whatever --repeat says.
 inline constexpr double kEnoughSeconds = 120;
 
-// Seconds that `first` and `second` return, run in turn: both see the same machine.
+// The seconds that two functions return. They are called in turn, so that both meet the same load
+// of the machine.
 struct Turns {
   std::vector<double> first, second;
 

@@ -13,7 +13,7 @@
 #include <iterator>
 #include <sstream>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "formats/reader.h"
 #include "formats/statistics.h"
 
@@ -73,7 +73,7 @@ double run_program(const std::string& program, std::vector<std::string> argument
 }
 
 struct Render {
-  double seconds = 0, output_seconds = 0;  // of the loop over the passes, by the clock on the wall
+  double seconds = 0, output_seconds = 0;  // real time of the loop over passes
   double processor = 0;                    // seconds of the whole program
 };
 

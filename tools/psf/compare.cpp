@@ -12,12 +12,12 @@
 
 #include "cli.h"
 #include "compare_report.h"
+#include "core/error.h"
 #include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "film/image.h"
 #include "film/picture.h"
-#include "formats/error.h"
 #include "notes.h"
 #include "study/metrics/error_picture.h"
 #include "study/metrics/reference.h"

@@ -1,4 +1,4 @@
-// What psf compare found: as text and JSON.
+// The results of psf compare, as text and JSON.
 #pragma once
 
 #include <fmt/format.h>
@@ -41,7 +41,7 @@ inline std::string value_text(study::Metric metric, double value, int digits = 6
                                        : fmt::format("{:.{}g}", value, digits);
 }
 
-// The whole picture a metric a line, regions a region a line.
+// Prints one metric per line for the whole picture, or one region per line.
 inline void print_values(const CompareReport& report) {
   const std::vector<study::Metric> metrics = in_order(report.first);
   if (report.rows.front().region.empty()) {
@@ -64,7 +64,7 @@ inline void print_values(const CompareReport& report) {
     }
     fmt::print("\n");
   }
-  std::vector<std::pair<std::string, std::string>> notes;  // names, what they depend on
+  std::vector<std::pair<std::string, std::string>> notes;  // names of metrics, their settings
   for (const study::Metric metric : metrics) {
     const std::string settings = study::settings(metric, report.options);
     const auto same = std::find_if(notes.begin(), notes.end(),

@@ -13,13 +13,13 @@
 
 #include "cli.h"
 #include "converge_report.h"
+#include "core/error.h"
 #include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/unfinished.h"
 #include "filter_options.h"
-#include "formats/error.h"
 #include "notes.h"
 #include "parameter_lists.h"
 #include "study/analytic.h"
@@ -156,7 +156,7 @@ void run_dumps(const ConvergeOptions& options, filter::TermSet asked) {
 constexpr std::size_t kReplicates = 6;
 constexpr std::uint64_t kPasses = 64;
 constexpr std::uint64_t kFitFrom = 2;  // passes
-constexpr double kTolerance = 0.1;     // of a slope
+constexpr double kTolerance = 0.1;     // allowed difference of a slope
 
 std::vector<study::SlopeCheck> check_slopes(const study::Analytic& scene,
                                             const std::vector<study::ConvergeSeries>& series,

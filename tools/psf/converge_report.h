@@ -1,13 +1,13 @@
-// What psf converge prints.
+// The text that psf converge prints.
 #pragma once
 
 #include "study/converge_file.h"
 
 namespace psf::tools {
 
-// A table a series: errors, slopes, bias and variance, M(n), radius, speed-ups.
+// Prints a table for each series: errors, slopes, bias and variance, M(n), radius, speed-ups.
 void print_convergence(const study::ConvergeReport& report);
-// Measured slopes beside those of theory.
+// Prints measured slopes beside those that theory predicts.
 void print_checks(const study::ConvergeReport& report);
 
 }  // namespace psf::tools

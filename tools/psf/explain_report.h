@@ -1,4 +1,4 @@
-// What psf explain says of a pixel: for people as text, for programs as JSON.
+// The output of psf explain: text for people, JSON for programs.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,15 +13,17 @@ struct ExplainReport {
   const study::Dump& dump;
   const study::Explanation& explanation;
   const study::Whence& whence;
-  std::size_t top = 5;    // rows of a table at most
-  bool vertices = false;  // with all values of each path's vertex
+  std::size_t top = 5;    // most rows of a table
+  bool vertices = false;  // show all values of each path's vertex
 };
 
-// The pixel, its vertices, and what it is against its own paths.
+// The pixel, its vertices, and a comparison of its value with that of its own paths.
 [[nodiscard]] std::string explain_overview(const ExplainReport& report);
-// What the weights refused, whence the light came, what would have refused it, the paths.
+// Tables of what the weights refused, where the light came from, what would have refused it, and
+// the paths.
 [[nodiscard]] std::string explain_tables(const ExplainReport& report);
-// Everything, whatever `top`. The neighbours of a path are arrays by column, of equal length.
+// Everything, whatever `top` is. The neighbours of a path are arrays of equal length, one per
+// column.
 [[nodiscard]] nlohmann::ordered_json explain_json(const ExplainReport& report);
 
 }  // namespace psf::tools

@@ -1,6 +1,7 @@
 // The tables of psf explain's text: refusals, whence the light came, remedies, paths.
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -16,9 +17,11 @@ namespace {
 using study::luminance;
 
 // What tells a source from the vertex it is averaged into, by term.
-constexpr const char* kApart[] = {
-    "another normal",  "another reflectance", "other lights seen", "", "off the tangent plane", "",
-    "another material"};
+constexpr std::array<const char*, filter::kTermCount> kApart = {
+    "another normal",        "another reflectance",
+    "other lights seen",     "",
+    "off the tangent plane", "",
+    "another material",      ""};
 
 // A remedy is worth a row if it refuses so much more of the leak than of the others, in shares.
 constexpr double kWorthARow = 0.1, kTells = 0.25;

@@ -14,7 +14,7 @@ namespace psf::tools {
 inline constexpr const char* kFateNames[] = {"averaged", "orphan", "without vertex", "left out",
                                              "overflowed"};
 
-// 0 has no sign here.
+// A point as text; -0 is shown as 0.
 inline std::string point(const Vec3& v) {
   return fmt::format("({:.4g}, {:.4g}, {:.4g})", v.x + 0, v.y + 0, v.z + 0);
 }
@@ -37,7 +37,7 @@ inline std::pair<std::uint32_t, std::uint32_t> pixel_of(const study::Explanation
   return {v.pixel[vertex] % width, v.pixel[vertex] / width};
 }
 
-// Text of a file may hold what a terminal obeys.
+// `text` with '?' for control characters, since text of a file may hold commands for a terminal.
 inline std::string shown(std::string text) {
   std::replace_if(
       text.begin(), text.end(),
@@ -45,18 +45,19 @@ inline std::string shown(std::string text) {
   return text;
 }
 
-// Empty where the dump has no name for it.
+// The name of a material; empty where the dump has no name for it.
 inline std::string material_name(const study::Dump& dump, std::uint32_t material) {
   const auto& names = dump.metadata().materials;
   return material < names.size() ? shown(names[material]) : "";
 }
-// "wall (3)", or "3".
+// A material as text: "wall (3)", or "3" where it has no name.
 inline std::string material_text(const study::Dump& dump, std::uint32_t material) {
   const std::string name = material_name(dump, material);
   return name.empty() ? fmt::format("{}", material) : fmt::format("{} ({})", name, material);
 }
 
-// Light l owns bit l mod 32.
+// The lights of some visibility bits, by name, or by the bit's number where the bit stands for
+// several lights or has no name. Light l has bit l mod 32.
 inline std::string lights_text(const study::Dump& dump, std::uint32_t bits) {
   std::string text;
   const auto& names = dump.metadata().lights;

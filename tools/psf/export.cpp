@@ -14,11 +14,11 @@
 
 #include "cli.h"
 #include "core/apart.h"
+#include "core/error.h"
 #include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
-#include "formats/error.h"
 #include "formats/reader.h"
 #include "option_values.h"
 #include "pass_range.h"

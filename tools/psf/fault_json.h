@@ -1,4 +1,4 @@
-// Faults of a path-vertex buffer, for programs.
+// Faults of a path-vertex buffer as JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>

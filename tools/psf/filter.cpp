@@ -74,8 +74,8 @@ class PictureWriter {
     check_files({options.input, options.tuned}, files);
   }
 
-  // Of the first `passes` passes; `snapshot`: for the name, 0 for the final ones. Returns the
-  // names.
+  // Writes the pictures of the first `passes` passes and returns their names. `snapshot`: number
+  // for the names; 0: the final pictures.
   std::vector<std::string> write(std::uint64_t snapshot, std::uint64_t passes,
                                  std::span<const study::CameraPictures> pictures) {
     const auto start = Clock::now();

@@ -1,4 +1,4 @@
-// The command line of psf filter, and of other verbs the part of it that says how to filter.
+// The command line of psf filter, and the part of it about how to filter, which other verbs share.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -17,9 +17,9 @@
 
 namespace psf::tools {
 
-// Every parameter of the filter but what a run counts.
+// Every parameter of the filter except Parameters::count_refusals.
 struct ParameterOptions {
-  // As written; empty: the default.
+  // Text as written on the command line; empty: the default.
   std::string r0, block, normal, reflectance, hit_distance, plane, direction, gloss, sources;
   double delta = filter::Radius().delta, agree = filter::Parameters().agree;
   std::optional<bool> visibility;
@@ -33,30 +33,31 @@ struct FilterOptions : ParameterOptions {
   CommonOptions common;
   std::string input;
   std::vector<std::string> outputs;
-  std::string passes, snapshots;  // as written; empty: all, none
-  std::string layers = "all";     // of EXRs, as written
-  std::string tuned;              // a file of psf tune that the parameters come from; empty: none
+  std::string passes, snapshots;  // as written; empty: all passes, no snapshots
+  std::string layers = "all";     // layers of EXRs, as written
+  std::string tuned;              // file of psf tune that gives the parameters; empty: none
   bool refusals = false, follow = false;
   std::optional<std::uint64_t> max_memory;  // bytes
 };
 
-// The terms that the command line gives; those that it leaves at their default are not among them.
+// The terms that are given on the command line, without those left at their default.
 [[nodiscard]] filter::TermSet asked_terms(const CLI::App& command);
-// Switches off, in all sets, what the dump cannot serve and nobody asked for; what is to be said of
-// it is added to `notes`, for when all else was checked: an error is one line.
+// Switches off, in all sets, the terms that are not `asked` for and whose channel the dump lacks.
+// Adds a remark about them to `notes`, to be printed when everything is checked, since an error
+// must be the only line.
 void fit_terms(const study::Dump& dump, std::span<filter::Parameters> sets, filter::TermSet asked,
                std::vector<std::string>& notes);
-// The layers that a list, "all" or "none" names. Throws Error{usage} for an unknown name.
+// The layers that `text` names: a list, "all" or "none". Throws Error{usage} for an unknown name.
 [[nodiscard]] study::PictureLayers layers_of(const std::string& text);
 
-// Each declares its options, which write into `options`.
+// Each of these declares options, which write into `options`.
 void add_parameter_options(CLI::App& command, ParameterOptions& options);
 void add_filter_options(CLI::App& command, FilterOptions& options);
 
-// Each throws Error{usage} naming the option whose text is no value of it.
+// Each of these throws Error{usage} that names an option whose text is not a valid value.
 [[nodiscard]] filter::Parameters parameters_of(const ParameterOptions& options);
 [[nodiscard]] filter::Parameters parameters_of(const FilterOptions& options);
-// Of a run over `passes` passes, ascending.
+// The snapshots of a run over `passes` passes, ascending.
 [[nodiscard]] std::vector<std::uint64_t> snapshots_of(const std::string& text,
                                                       std::uint64_t passes);
 

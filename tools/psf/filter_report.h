@@ -1,4 +1,4 @@
-// What psf filter says of a run: for people on stdout, for programs as JSON.
+// The report of psf filter on a run: text for people on stdout, JSON for programs.
 #pragma once
 
 #include <fmt/format.h>
@@ -19,12 +19,12 @@ struct FilterReport {
   filter::Parameters parameters;
   study::FilterOutcome outcome;
   std::vector<formats::CameraInfo> cameras;
-  std::vector<std::string> written;  // files
+  std::vector<std::string> written;  // names of the files written
   double seconds_write = 0, seconds = 0;
   study::PeakMemory peak;
 };
 
-// "a 1, b 2" of those that are not 0, or `otherwise`.
+// Names and counts that are not 0, as "a 1, b 2", or `otherwise` where all are 0.
 template <typename Names, typename Counts, typename Format>
 std::string listed(const Names& names, const Counts& counts, const char* otherwise, Format format) {
   std::string text;

@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "cli.h"
+#include "core/error.h"
 #include "core/interrupt.h"
 #include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
-#include "formats/error.h"
 #include "formats/metadata.h"
 #include "formats/reader.h"
 #include "formats/statistics.h"
@@ -111,7 +111,7 @@ void print_overview(const formats::Reader& reader, const formats::Metadata& meta
                                                                bytes(reader.uncommitted_bytes()))));
 }
 
-// Of the column that holds the channels' names.
+// The width of the table column with the channels' names.
 std::size_t name_width(const formats::Reader& reader) {
   std::size_t width = 14;
   for (const formats::Channel& channel : reader.head().channels) {
@@ -170,10 +170,10 @@ void print_statistics(const formats::Reader& reader, const Statistics& statistic
   }
 }
 
-// Of each camera, where the file is a dump that can be filtered.
+// The noise shares of each camera, where the file is a dump that can be filtered.
 struct Noise {
   std::vector<study::NoiseShare> of;
-  std::string unknown;  // why there is none
+  std::string unknown;  // the reason why there are no shares
 };
 
 Noise read_noise(const std::string& path) {

@@ -1,4 +1,4 @@
-// What the metadata of a dump list, as tables of psf info.
+// The lists in the metadata of a dump, as tables of psf info.
 #pragma once
 
 #include <string>
@@ -7,10 +7,11 @@
 
 namespace psf::tools {
 
-// Cameras, lights and materials, those there are.
+// Prints tables of the cameras, lights and materials, where there are any.
 void print_tables(const formats::Metadata& metadata);
 
-// Text of a file may hold what a terminal obeys; "-" for none.
+// `text` with '?' for control characters, since text of a file may hold commands for a terminal;
+// "-" where it is empty.
 [[nodiscard]] std::string shown_or_dash(std::string text);
 
 }  // namespace psf::tools

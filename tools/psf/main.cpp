@@ -20,6 +20,8 @@ int main(int argc, char** argv) {
   psf::tools::add_converge(app);
   psf::tools::add_tune(app);
   psf::tools::add_explain(app);
+#ifdef PSF_WITH_REPORT
   psf::tools::add_report(app);
+#endif
   return psf::tools::run_tool(app, argc, argv);
 }

@@ -1,4 +1,4 @@
-// What share of the noise of the picture without filter is u's, as text and as JSON.
+// The share of u in the noise of the picture without filter, as text and as JSON.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,14 +13,14 @@
 
 namespace psf::tools {
 
-// "12.3%", "no noise", or why it is not known.
+// The share as text: "12.3%", "no noise", or the reason why it is not known.
 inline std::string share_text(const study::NoiseShare& noise) {
   if (noise.pixels == 0) return "not known: no pixel has two paths";
   const double share = noise.share();
   return std::isnan(share) ? "no noise" : fmt::format("{:.1f}%", 100 * share);
 }
 
-// An entry a camera; the share is null where there is no noise.
+// One entry per camera; the share is null where there is no noise.
 inline nlohmann::ordered_json noise_json(std::span<const study::NoiseShare> noise,
                                          std::span<const formats::CameraInfo> cameras) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();

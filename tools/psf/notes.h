@@ -1,4 +1,4 @@
-// Notes of what a user should know, a line each.
+// Prints remarks for the user, a line each.
 #pragma once
 
 #include <string>

@@ -6,15 +6,15 @@
 #include <cmath>
 #include <optional>
 
+#include "core/error.h"
 #include "filter_options.h"
-#include "formats/error.h"
 #include "option_values.h"
 
 namespace psf::tools {
 namespace {
 
-constexpr std::size_t kMostValues = 1000;  // of a list
-constexpr double kSlack = 1e-9;  // of a step: ranges hold their end whatever rounding does
+constexpr std::size_t kMostValues = 1000;  // most values of a list
+constexpr double kSlack = 1e-9;  // part of a step: ranges include their end despite rounding
 
 std::vector<std::string> split(const std::string& text, char by) {
   std::vector<std::string> parts;

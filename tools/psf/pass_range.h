@@ -1,4 +1,4 @@
-// "FIRST:LAST", a range of passes as the command line has it.
+// Parses a range of passes on the command line, "FIRST:LAST".
 #pragma once
 
 #include <fmt/format.h>
@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "option_values.h"
 #include "study/filter_dump.h"
 
@@ -14,13 +14,14 @@ namespace psf::tools {
 
 constexpr const char* kPassesHelp = "only these passes, from 0, LAST not included";
 
-// A whole number of passes; throws Error{usage} that names the option.
+// Parses a number of passes. Throws Error{usage} that names the option.
 inline std::uint64_t parse_pass(const std::string& text, const char* option) {
   if (const auto number = parse_number<std::uint64_t>(text)) return *number;
   throw Error(ErrorCode::usage, fmt::format("{}: '{}' is no number of passes", option, text));
 }
 
-// LAST is not included; both may be left out. Empty: all passes.
+// Parses FIRST:LAST, where LAST is not included and both may be left out. Empty text selects all
+// passes.
 inline study::PassSelection parse_passes(const std::string& text, const char* option = "--passes") {
   study::PassSelection selection;
   if (text.empty()) return selection;

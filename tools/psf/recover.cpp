@@ -8,13 +8,13 @@
 #include <nlohmann/json.hpp>
 
 #include "cli.h"
+#include "core/error.h"
 #include "core/interrupt.h"
 #include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "fault_json.h"
-#include "formats/error.h"
 #include "text.h"
 #include "verbs.h"
 

@@ -1,5 +1,5 @@
 // psf report: a page to look at, from the folders of sweeps and convergence studies.
-#include "study/report/report.h"
+#include "report/report.h"
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@ namespace {
 struct ReportCommand {
   std::vector<std::string> folders;
   std::string output;
-  study::ReportOptions report;
+  report::ReportOptions report;
   CommonOptions common;
 };
 
@@ -51,8 +51,8 @@ std::vector<std::string> files_of(const std::vector<std::string>& folders) {
 
 void run(const ReportCommand& command) {
   check_files(files_of(command.folders), {command.output, command.common.json});
-  const study::ReportOutcome outcome =
-      study::write_report(command.folders, command.output, command.report);
+  const report::ReportOutcome outcome =
+      report::write_report(command.folders, command.output, command.report);
   fmt::print(
       "{}: {}, {}, {:.1f} MB\n", command.output, counted(outcome.sections, "study", "studies"),
       counted(outcome.pictures, "picture", "pictures"), static_cast<double>(outcome.bytes) / 1e6);

@@ -7,10 +7,10 @@
 
 #include "cli.h"
 #include "core/apart.h"
+#include "core/error.h"
 #include "film/image.h"
 #include "film/picture.h"
 #include "filter/parameters_text.h"
-#include "formats/error.h"
 #include "notes.h"
 #include "pass_range.h"
 #include "version.h"

@@ -1,5 +1,5 @@
-// What psf sweep and psf converge have in common: a reference to measure against and a folder that
-// takes the results.
+// The common parts of psf sweep and psf converge: a reference to measure against, and a folder for
+// the results.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -19,7 +19,7 @@ namespace psf::tools {
 
 struct StudyOptions {
   std::string reference, reference_layer, folder, passes, camera;
-  std::string metric = "relMSE";  // orders what is printed
+  std::string metric = "relMSE";  // printed results are ordered by it
   study::MetricOptions metrics;
   bool pictures = false;
   std::optional<std::uint64_t> max_memory;  // bytes
@@ -30,14 +30,14 @@ void add_study_options(CLI::App& command, StudyOptions& options, bool required);
 
 class StudyFolder {
  public:
-  // Reads the reference; what is to be said of it is added to `notes`. Throws Error{usage} for a
-  // camera that is not there or not named though there are several, Error{bad_input} where the
-  // reference has another size.
+  // Reads the reference, and adds remarks about it to `notes`. Throws Error{usage} where the camera
+  // does not exist, or is not named though there are several, Error{bad_input} where the reference
+  // has another size.
   StudyFolder(const StudyOptions& options, const study::Dump& dump,
               std::vector<std::string>& notes);
 
-  // The names, in the folder, are apart from the inputs and from --json (check_files()); then it is
-  // made where it is missing.
+  // Checks that the files `names` in the folder are none of the inputs nor the file of --json
+  // (check_files()), and then makes the folder where it is missing.
   void make(std::vector<std::string> inputs, const std::vector<std::string>& names,
             const std::string& json) const;
 
@@ -49,9 +49,11 @@ class StudyFolder {
   [[nodiscard]] const study::MetricOptions& metric_options() const { return options_.metrics; }
   [[nodiscard]] study::Metric metric() const { return metric_; }
 
-  // "reference.exr", unless the reference is that file; with --pictures one of the names.
+  // Writes the reference as "reference.exr", unless it was read from that file. With --pictures
+  // this is one of the names.
   void write_reference() const;
-  // A picture of the reference's size as EXR; with parameters they are its attributes.
+  // Writes a picture of the reference's size as EXR, with `parameters`, if given, as its
+  // attributes.
   void write(const std::string& name, std::span<const Rgb> picture,
              const std::optional<filter::Parameters>& parameters) const;
 
@@ -65,7 +67,7 @@ class StudyFolder {
   std::vector<Rgb> reference_;
 };
 
-// The number of the camera of this name, the only one where it is empty.
+// The number of the camera called `name`, or of the only camera where `name` is empty.
 [[nodiscard]] std::size_t find_camera(const study::Dump& dump, const std::string& name);
 
 }  // namespace psf::tools

@@ -1,4 +1,4 @@
-// Numbers as people read them.
+// Numbers as text for people.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace psf::tools {
 
-// 1234567 -> "1,234,567"
+// 1234567 becomes "1,234,567".
 inline std::string with_commas(std::uint64_t value) {
   std::string text = std::to_string(value);
   for (std::size_t left = text.size(); left > 3;) {
@@ -16,12 +16,12 @@ inline std::string with_commas(std::uint64_t value) {
   return text;
 }
 
-// "1 pass", "2 passes"
+// A number with its noun: "1 pass", "2 passes".
 inline std::string counted(std::uint64_t count, const char* one, const char* many) {
   return with_commas(count) + " " + (count == 1 ? one : many);
 }
 
-// Bytes, rounded up: "1,234 MiB"
+// A number of bytes as mebibytes, rounded up: "1,234 MiB".
 inline std::string in_mebibytes(std::uint64_t bytes) {
   constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
   return with_commas((bytes + kMebibyte - 1) / kMebibyte) + " MiB";

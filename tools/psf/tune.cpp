@@ -40,7 +40,7 @@ struct TuneOptions {
 constexpr const char* kRadii = "2px,2.8px,4px,5.7px,8px,11.3px,16px,22.6px,32px";
 constexpr std::size_t kShown = 8;  // rows of the table
 constexpr std::size_t kProgressSteps = 1000;
-constexpr double kCorrelated = 0.05;  // of the halves' noise: worth a word
+constexpr double kCorrelated = 0.05;  // correlation of the parts' noise that is worth a note
 
 using Rows = std::vector<const study::TuneRow*>;
 

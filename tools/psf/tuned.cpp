@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "option_values.h"
 #include "study/study_file.h"
 

@@ -1,4 +1,4 @@
-// Parameters that psf tune chose, from the file that it wrote.
+// Reads the parameters that psf tune chose from the file that it wrote.
 #pragma once
 
 #include <string>

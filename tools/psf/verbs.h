@@ -1,4 +1,4 @@
-// The verbs of psf. Each adds its subcommand; one file a verb.
+// The verbs of psf. Each function adds a subcommand; each verb has a file.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli.h"
+#include "core/error.h"
 #include "core/interrupt.h"
 #include "core/json_text.h"
 #include "core/output_file.h"
@@ -13,7 +14,6 @@
 #include "core/progress.h"
 #include "fault_json.h"
 #include "formats/check.h"
-#include "formats/error.h"
 #include "text.h"
 #include "verbs.h"
 

@@ -8,7 +8,7 @@
 namespace psf::filter::engine {
 namespace {
 
-constexpr float kGrowth = 8;  // of the squared radius
+constexpr float kGrowth = 8;  // factor by which the squared radius grows
 constexpr float kLeast = 1e-30f;
 
 bool closer(const search::Neighbor& a, const search::Neighbor& b) {

@@ -1,4 +1,4 @@
-// Orphans of the fast engine: the nearest sources that pass, found by balls that grow.
+// Adoption of orphans in the fast engine: balls that grow find the nearest sources that pass.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace psf::filter::engine {
 
-// The same as adopt() of orphans.h, for a radius r_i. `index`: over the nodes of the tree's upper
-// level.
+// Returns the same as adopt() of orphans.h, for the orphan i with radius r_i. `index` holds the
+// boxes of the tree's parents.
 [[nodiscard]] Adopted adopt(const Tree& tree, const search::BoxIndex& index, const Problem& problem,
                             std::uint32_t i, float r_i);
 

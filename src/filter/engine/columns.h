@@ -1,4 +1,4 @@
-// Which values of a record the terms in use look at, as columns of 32-bit values.
+// The values of records that the terms in use compare, as columns of 32-bit values.
 #pragma once
 
 #include <cstddef>
@@ -11,28 +11,29 @@
 
 namespace psf::filter::engine {
 
-// Records a group, groups a family, queries a packet: the values of the widest vector.
+// The number of records in a group, of nodes in a family, of queries in a packet, and of values in
+// the widest vector.
 inline constexpr std::size_t kWidth = 16;
 
-// Every column there may be: 3 of x_i and what the eight terms add.
+// The most columns there may be: 3 for x_i, the others for the eight terms.
 inline constexpr std::size_t kMaxColumns = 16;
 
-// First columns of what is in use; x_i is always at 0. Integers are kept as floats of the same
-// bits.
+// The first column of each value in use; x_i always begins at 0. Integers are kept as floats of the
+// same bits.
 struct ColumnPlan {
   explicit ColumnPlan(const WeightTerms& terms);
 
   std::size_t count = 3;
-  std::optional<std::size_t> normal, reflectance, direction;                  // three columns
-  std::optional<std::size_t> visibility, hit_distance, material, lobe_width;  // one
+  std::optional<std::size_t> normal, reflectance, direction;                  // three columns each
+  std::optional<std::size_t> visibility, hit_distance, material, lobe_width;  // one column each
 
-  // Integers are ordered as such.
+  // Whether the bits of a column are integers, which are to be compared as integers.
   [[nodiscard]] bool is_integer(std::size_t column) const {
     return column == visibility || column == material;
   }
 
-  // The columns, (count, kWidth), of as many records as `chosen` has, at most kWidth; the last one
-  // fills the rest of a row.
+  // Writes the columns, (count, kWidth), of the records `chosen`, at most kWidth of them. The last
+  // record is repeated up to the end of each row.
   void gather(const Records& records, std::span<const std::uint32_t> chosen, float* out) const;
 };
 

@@ -1,5 +1,5 @@
-// Counts the pairs in the balls and what each term refuses of them: for the statistics alone, so it
-// takes its time.
+// Counts the pairs in the balls, and how many of them each term refuses. It serves the statistics
+// alone, and is not made to be fast.
 #if defined(PSF_FILTER_ENGINE_COUNT_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSF_FILTER_ENGINE_COUNT_INL_H
 #undef PSF_FILTER_ENGINE_COUNT_INL_H

@@ -7,8 +7,8 @@
 
 namespace psf::filter::engine {
 
-// Finds the same neighbours as plain.h, to the last one. None where values are so large that
-// products of them may be no finite floats, which the bounds rely on.
+// An engine that finds exactly the neighbours that plain.h finds. Returns null where values are so
+// large that products of them may not be finite floats; the bounds rely on finite products.
 [[nodiscard]] std::unique_ptr<Engine> make(const Problem& problem);
 
 }  // namespace psf::filter::engine

@@ -1,5 +1,5 @@
-// The floor under the filter's time: the innermost loops of the kernel on data in the first-level
-// cache.
+// A lower limit for the filter's time: the innermost loops of the kernel, on data that stay in the
+// first-level cache.
 #pragma once
 
 #include <cstddef>
@@ -10,17 +10,17 @@
 
 namespace psf::filter::engine {
 
-// A packet of queries and a few hundred sources, about 20 KB, strewn so that no bounds decide
-// anything: every pair is tested one by one, for chi and for each term that is on.
+// A packet of queries and 256 sources, about 20 KB, placed so that bounds decide nothing: every
+// pair is tested, for chi and for each term that is on.
 class Floor {
  public:
   explicit Floor(const WeightTerms& terms);
   ~Floor();
 
-  // Tests every pair `times` over; returns how many passed.
+  // Tests every pair `times` times; returns how many tests passed.
   std::uint64_t run(std::size_t times);
 
-  // Pairs tested by run(1).
+  // The number of pairs that run(1) tests.
   static constexpr std::size_t kPairs = 16 * 256;
 
  private:

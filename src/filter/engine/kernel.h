@@ -14,70 +14,73 @@
 
 namespace psf::filter::engine {
 
-// A query a lane. What is averaged for a query, and in which order, follows from the queries of its
-// packet, the tree and the list of parents alone, not from how many lanes a vector has.
+// Sixteen queries, one per lane. Which sources are averaged for a query, and in which order,
+// depends on the queries of its packet, the tree and the list of parents alone, not on how many
+// lanes a vector has.
 struct Packet {
-  // (columns, 16), as in the tree's plan, and the least and the greatest value of each column, at
-  // low[column * kWidth] and high[column * kWidth]; borrowed.
+  // The queries' columns, (columns, 16), in the order of the tree's plan, and the least and the
+  // greatest value of each column, at low[column * kWidth] and high[column * kWidth]. All are
+  // borrowed.
   const float* columns;
   const float* low;
   const float* high;
-  alignas(64) float r_sq[kWidth];         // squared world units; 0: nothing to find
+  alignas(64) float r_sq[kWidth];         // r_i^2, squared world units; 0: finds nothing
   alignas(64) float plane_reach[kWidth];  // t r_i of `plane`
 
-  // What the walk adds to: of the values that pass, and how many.
+  // The walk adds the values of the sources that pass to `sum`, and their number to `count`.
   alignas(64) double sum[3][kWidth];
   alignas(64) std::int32_t count[kWidth];
-  // Out: whether the pair (i, i) passes chi and every term, for which a walk cannot know that it
-  // must; not 0 if so.
+  // Set by the walk: not 0 where the pair (i, i) passes chi and every term. Where it is 0, the walk
+  // did not count the query's own record, which always counts, and the caller has to add it.
   alignas(64) std::int32_t met_itself[kWidth];
 };
 
-// What a packet needs for several radii, of which Packet has the largest; all borrowed. Ring k
-// holds what is in ball k and not in ball k - 1.
+// What a packet needs in addition for several radii; Packet::r_sq holds the largest. Ring k is ball
+// k without ball k - 1. All pointers are borrowed.
 struct RingPacket {
-  std::size_t count;  // of rings
+  std::size_t count;  // number of rings
   const float* r_sq;  // (count, 16) squared world units, ascending for each query
-  // The least and the greatest of each ring, or less and more; infinity beyond count, up to a
-  // multiple of 16.
+  // Bounds of r_sq over the queries, for each ring: least_r_sq is at most, greatest_r_sq at least
+  // every r_sq. Both are infinity from `count` up to the next multiple of 16.
   const float* least_r_sq;
   const float* greatest_r_sq;
   const float* plane_reach;  // (count, 16) t r_i of `plane`, where it is on
-  // What the walk adds to: sums of the values that pass, red, green, blue, and how many.
-  double* sums;   // (count + 1, 16, 4); the last ring is of no use
-  double* whole;  // (count, 4), for every query
+  // The walk adds to these the values that pass: red, green, blue, and the number of sources.
+  double* sums;   // (count + 1, 16, 4) for each query; the last ring holds nothing of use
+  double* whole;  // (count, 4) sums that belong to every query
 };
 
-// What one query averages, for all radii; all borrowed, and written.
+// The results of average_balls() for one query and all radii. All pointers are borrowed.
 struct RingMeans {
-  float* average;            // (count, 3), and one more; anything where there are no neighbours
-  std::uint32_t* neighbors;  // (count)
-  double* balls;             // (count, 4) red, green, blue and how many
-  double* inverse;           // of how many; as long as RingPacket's least_r_sq
+  float* average;            // (count, 3), and one value more; undefined without neighbours
+  std::uint32_t* neighbors;  // (count) number of sources in each ball
+  double* balls;             // (count, 4) sums of red, green and blue, and the number of sources
+  double* inverse;           // 1 / number of sources; as long as RingPacket's least_r_sq
 };
 
 // Counts of pairs for the statistics, the pair (i, i) included.
 struct PairCounts {
   std::uint64_t candidates = 0;                     // chi = 1
-  std::array<std::uint64_t, kTermCount> refused{};  // of them, by term, whatever the others say
+  std::array<std::uint64_t, kTermCount> refused{};  // candidates that each term alone refuses
   PairCounts& operator+=(const PairCounts& other);
 };
 
-// The least value of each of `columns` rows of `lows`, (columns, 16), and the greatest of each of
-// `highs`, to low[column * kWidth] and high[column * kWidth].
+// Writes the least value of each row of `lows`, (columns, 16), to low[column * kWidth], and the
+// greatest value of each row of `highs`, (columns, 16), to high[column * kWidth].
 void extremes(const ColumnPlan& plan, std::size_t columns, const float* lows, const float* highs,
               float* low, float* high);
 
-// Adds up, for every lane, the sources below the given parents of the tree that pass chi and every
-// term that is on.
+// Adds to the sums and counts of each query of `packet` the sources below the given parents that
+// pass chi and every term that is on. Sets packet.met_itself.
 void average(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
              Packet& packet);
 
-// The same by rings, for all radii in one walk; sets packet.met_itself too.
+// Does the same for all radii in one walk, but adds each source to its ring in `rings`. Sets
+// packet.met_itself.
 void average_rings(const Tree& tree, const WeightTerms& terms,
                    std::span<const std::uint32_t> parents, Packet& packet, const RingPacket& rings);
 
-// Of the q-th query of the packet, whose rings are complete.
+// Computes `means` of the q-th query of the packet from `rings`, after average_rings().
 void average_balls(const RingPacket& rings, std::size_t q, const RingMeans& means);
 
 // Adds to `counts` the pairs of the packet's queries with the sources below the given parents.

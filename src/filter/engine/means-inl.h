@@ -1,4 +1,4 @@
-// Sums of rings, and from them the means of balls.
+// Turns sums over rings into means over balls.
 #if defined(PSF_FILTER_ENGINE_MEANS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSF_FILTER_ENGINE_MEANS_INL_H
 #undef PSF_FILTER_ENGINE_MEANS_INL_H
@@ -28,7 +28,7 @@ struct Quadruple {
   HWY_INLINE void store(double* to) const {
     for (std::size_t k = 0; k < 4; k += kStep) hn::Store(part[k / kStep], kTag, to + k);
   }
-  // Writes four, the count too.
+  // Writes all four values as floats, the count too.
   HWY_INLINE void store(float* to) const {
     constexpr hn::Rebind<float, Tag> floats;
     for (std::size_t k = 0; k < 4; k += kStep) {
@@ -64,11 +64,12 @@ HWY_INLINE void means_of_balls(const RingPacket& rings, std::size_t q, const Rin
     if (++k == count) break;
     ball = ball + of_ring(k);
   }
-  // Divisions are most of the time that is spent here: one for three, and several at once.
+  // Divisions take most of the time here. So each ball has one division for its three colours, and
+  // a vector of balls is divided at once.
   for (std::size_t k = 0; k < count; k += kDoubles) {
     hn::Store(hn::Div(hn::Set(kDD, 1), hn::Load(kDD, inverse + k)), kDD, inverse + k);
   }
-  // Of n equal values it is that value too.
+  // Multiplying by 1 / n also gives the exact mean of n equal values.
   for (std::size_t k = 0; k < count; ++k) {
     (Quadruple::load(balls + 4 * k) * inverse[k]).store(means.average + 3 * k);
     means.neighbors[k] = static_cast<std::uint32_t>(balls[4 * k + 3]);

@@ -1,5 +1,5 @@
-// The queries of a problem in packets of 16, and the tree over its sources: what every walk starts
-// from.
+// The queries of a problem in packets of 16, and the tree over its sources. Every walk starts from
+// them.
 #pragma once
 
 #include <cstddef>
@@ -16,12 +16,12 @@ namespace psf::filter::engine {
 
 class Packets {
  public:
-  // Queries that share a search: as many as a parent has records.
+  // The number of queries that share a search, which is that of the records below a parent.
   static constexpr std::size_t kGrain = kWidth * kWidth;
 
   explicit Packets(const Problem& problem);
 
-  // Whether the values of all who take part are small enough for the bounds.
+  // Whether the values of all queries and sources are small enough for the bounds.
   [[nodiscard]] bool is_moderate() const;
 
   // The queries' record numbers in a compact order.
@@ -33,8 +33,9 @@ class Packets {
     return all_sources_ || p_.roles.of[i] == Role::source;
   }
 
-  // Calls visit(queries, nodes, packet) for the packets of queries [begin, end) of the order, begin
-  // a multiple of kGrain, at most kGrain of them; nodes: the parents near them.
+  // Calls visit(queries, nodes, packet) for each packet of the queries [begin, end) of order().
+  // `begin` is a multiple of kGrain, and the range has at most kGrain queries. `nodes` are the
+  // parents near the queries.
   template <class Visit>
   void each(std::size_t begin, std::size_t end, const Visit& visit) const {
     const std::span queries = order().subspan(begin, end - begin);
@@ -50,10 +51,10 @@ class Packets {
   }
 
  private:
-  // Columns and bounds of a packet that is no group of the tree.
+  // Columns and bounds of a packet that is not a group of the tree.
   struct Own {
     alignas(64) float columns[kMaxColumns * kWidth];
-    alignas(64) float low[kMaxColumns * kWidth];  // every kWidth-th counts
+    alignas(64) float low[kMaxColumns * kWidth];  // every kWidth-th value is used, in `high` too
     alignas(64) float high[kMaxColumns * kWidth];
   };
 
@@ -66,7 +67,7 @@ class Packets {
   const Problem& p_;
   std::vector<std::uint32_t> order_;
   Tree tree_;
-  bool all_sources_;  // every query is one: then a packet is a group, a range a parent
+  bool all_sources_;  // every query is a source: then packets are groups, and ranges are parents
   search::BoxIndex index_;
 };
 

@@ -174,12 +174,12 @@ class RingEngine::Range {
   core::Buffer<float> r_sq_, least_r_sq_, greatest_r_sq_, plane_reach_;  // as RingPacket has them
   core::Buffer<double> sums_;                                            // (rings + 1, 16, 4)
   core::Buffer<double> whole_;                                           // (rings, 4)
-  // Of a query, as RingMeans has them.
+  // The RingMeans of the query at hand.
   core::Buffer<double> balls_, inverse_;
   core::Buffer<std::uint32_t> neighbors_;
   std::vector<Rgb> average_;
   QueryCounts queries_;
-  bool matched_ = true;  // of the orphan that was adopted last
+  bool matched_ = true;  // Adopted::matched of the last orphan
 };
 
 void RingEngine::set_values(std::span<const Rgb> values) {

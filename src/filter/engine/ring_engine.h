@@ -13,32 +13,37 @@ namespace psf::filter::engine {
 
 class RingEngine {
  public:
-  // The radii of record i are float(scale * basis[i]), as of radius.h; problem.radius is the
-  // largest one. `scales`: ascending, distinct. All borrowed.
+  // The radii of record i are float(scale * basis[i]) for each of `scales`, as in radius.h;
+  // problem.radius holds the largest. `scales` are ascending and distinct. All arguments are
+  // borrowed.
   RingEngine(const Problem& problem, std::span<const double> scales, std::span<const double> basis)
       : p_(problem), scales_(scales), basis_(basis), packets_(problem) {}
 
-  // What a query is given for every scale, ascending; valid during a call.
+  // The results of one query for every scale, in ascending order of the scales; valid during the
+  // call of `visit`.
   struct Results {
     std::uint32_t query;  // record number
     std::span<const Rgb> average;
-    std::span<const std::uint32_t> neighbors;  // sources averaged; 0 for an orphan
-    // (scales, 4): red, green and blue that `average` is made of, in double; then of no use.
+    std::span<const std::uint32_t> neighbors;  // number of sources averaged; 0 for an orphan
+    // (scales, 4): the sums of red, green and blue that `average` is computed from; the fourth
+    // value is of no use.
     std::span<const double> sums;
   };
 
-  // Where it is not, nothing else may be asked.
+  // Whether the values are small enough for the engine. Where they are not, call nothing else.
   [[nodiscard]] bool is_moderate() const { return packets_.is_moderate(); }
   [[nodiscard]] std::span<const std::uint32_t> queries() const { return packets_.order(); }
   // r_i of record i for a scale.
   [[nodiscard]] float radius(std::uint32_t i, std::size_t scale) const {
     return static_cast<float>(scales_[scale] * basis_[i]);
   }
-  // values[j] of every source, by record number; before average().
+  // Sets the values to average, by record number; only those of sources are read. Call it before
+  // average().
   void set_values(std::span<const Rgb> values);
 
-  // Visits queries [begin, end) of queries() in this order, begin a multiple of kGrain, at most
-  // kGrain of them. Adds to statistics[k] of scale k what is counted of queries.
+  // Calls `visit` for each query in [begin, end) of queries(), in this order. `begin` is a multiple
+  // of kGrain, and the range has at most kGrain queries. Adds the counts of queries for scale k to
+  // statistics[k].
   static constexpr std::size_t kGrain = Packets::kGrain;
   void average(std::size_t begin, std::size_t end, std::span<Statistics> statistics,
                const std::function<void(const Results&)>& visit) const;

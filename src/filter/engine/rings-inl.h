@@ -1,4 +1,4 @@
-// A packet of queries walks the tree for several radii at once: every pair goes to its ring.
+// A packet of queries walks the tree for several radii at once: every pair is added to its ring.
 #if defined(PSF_FILTER_ENGINE_RINGS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSF_FILTER_ENGINE_RINGS_INL_H
 #undef PSF_FILTER_ENGINE_RINGS_INL_H
@@ -34,12 +34,11 @@ class RingWalk {
   }
 
  private:
-  // The rings of the pairs below a node, as their distances have it: none is below the first, none
-  // beyond the last.
+  // The range of rings, [first, last], in which the distances of all pairs below a node lie.
   struct Window {
     std::size_t first, last;
   };
-  // Of the nodes of a family.
+  // The windows of the nodes of a family.
   class Windows {
    public:
     HWY_INLINE Windows(const RingWalk& walk, LevelName level, std::size_t family) : walk_(walk) {
@@ -95,12 +94,14 @@ class RingWalk {
     }
   }
 
-  // `plane` may put a pair into a later ring than its distance does.
+  // Whether all pairs below a node are in the same ring. Never with `plane`, which may put a pair
+  // into a later ring than its distance does.
   [[nodiscard]] HWY_INLINE bool is_one_ring(const Window& window) const {
     return !on_.plane && window.first == window.last;
   }
 
-  // Adds those of the nodes, whose pairs all pass, that are in one ring, and returns them.
+  // All pairs of `nodes` pass. Adds the nodes whose pairs are all in the same ring, and returns the
+  // bits of these nodes.
   HWY_INLINE std::uint32_t add_whole(LevelName level, std::size_t family, std::uint32_t nodes) {
     if (nodes == 0) return 0;
     std::uint32_t added = 0;
@@ -115,7 +116,7 @@ class RingWalk {
     return added;
   }
 
-  // Every source below a node, for every query.
+  // Adds every source below a node to `ring` of every query.
   HWY_INLINE void add_node(LevelName level, std::size_t family, std::size_t place,
                            std::size_t ring) {
     const double* sums = tree_.sums(level, family) + place;
@@ -126,7 +127,7 @@ class RingWalk {
     (Quadruple::load(sum) + Quadruple::load(value)).store(sum);
   }
 
-  // The records of a group, pair by pair.
+  // Tests the records of a group pair by pair, and adds those that pass to their rings.
   HWY_INLINE void add_group(std::size_t group, std::uint32_t open, const Window& window) {
     const double* values = tree_.values(group);
     for (std::size_t k = 0; k < kWidth; ++k) {
@@ -139,7 +140,7 @@ class RingWalk {
       const Pairs pairs(*this, group, open, lane);
       std::int32_t source[kWidth + kLanes];
       const std::size_t n = list(pairs.met, 0, source);
-      // First where all go, so that additions do not wait.
+      // First finds all places and then adds, so that additions do not wait.
       for (std::size_t k = n; k % kAtOnce != 0; ++k) source[k] = source[0];
       for (std::size_t k = 0; k < n; k += kAtOnce) {
         find_places(pairs, source + k, window, lane, place_of_ + k);
@@ -148,13 +149,13 @@ class RingWalk {
     }
   }
 
-  // Of the sources of a group with the queries in some lanes.
+  // The pairs of the sources of a group with the queries in some lanes of a packet.
   struct Pairs {
     Terms terms;
     const float* columns;
     M pass[kWidth];
     V d_sq[kWidth];
-    std::uint32_t met = 0;  // sources that pass for some query
+    std::uint32_t met = 0;  // bits of the sources that pass for at least one query
 
     HWY_INLINE Pairs(const RingWalk& walk, std::size_t group, std::uint32_t open, std::size_t lane)
         : terms(walk.tree_.plan(), walk.on_, walk.packet_, lane), columns(walk.tree_.group(group)) {
@@ -176,8 +177,8 @@ class RingWalk {
     }
   };
 
-  // Where in the sums some sources go. Pairs that do not pass go to a ring behind the last, which
-  // nobody reads: faster than to ask.
+  // Finds the places in RingPacket::sums to which kAtOnce sources are added. Pairs that do not pass
+  // go to the ring behind the last, which nobody reads: that is faster than to branch.
   HWY_INLINE void find_places(const Pairs& pairs, const std::int32_t* source, const Window& window,
                               std::size_t lane, std::int32_t (*place_of)[kLanes]) const {
     V d_sq[kAtOnce];
@@ -210,7 +211,7 @@ class RingWalk {
     }
   }
 
-  // Adds to each ring[k] how many of the rings [first, last) it is beyond.
+  // Adds to each ring[k] the number of rings in [first, last) whose limit source k is beyond.
   template <class IsBeyond>
   static HWY_INLINE void count_rings(const float* limits, std::size_t first, std::size_t last,
                                      VI* ring, const IsBeyond& is_beyond) {
@@ -231,7 +232,7 @@ class RingWalk {
     }
   }
 
-  static constexpr std::size_t kAtOnce = 4;  // sources that share a loop over rings
+  static constexpr std::size_t kAtOnce = 4;  // number of sources that share a loop over rings
 
   const Tree& tree_;
   const WeightTerms& on_;
@@ -239,7 +240,7 @@ class RingWalk {
   const RingPacket& rings_;
   Terms terms_;
   Judge judge_;
-  // Of the group at hand: red, green, blue and 1 of its sources, and where they go.
+  // For the sources of the group at hand: red, green, blue and 1, and their places in the sums.
   alignas(64) double value_[kWidth][4];
   alignas(64) std::int32_t place_of_[kWidth + kAtOnce][kLanes];
 };

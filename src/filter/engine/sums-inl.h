@@ -1,4 +1,4 @@
-// Sums of values in double and their counts, a query a lane.
+// Sums of values in double and their counts, one query per lane.
 #if defined(PSF_FILTER_ENGINE_SUMS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSF_FILTER_ENGINE_SUMS_INL_H
 #undef PSF_FILTER_ENGINE_SUMS_INL_H
@@ -15,11 +15,12 @@ using DD = hn::CappedTag<double, kWidth / 2>;
 using VD = hn::Vec<DD>;
 using MD = hn::Mask<DD>;
 constexpr DD kDD;
-// Vectors of doubles for one of floats: two, but where a vector has one lane.
+// The number of vectors of doubles for one vector of floats: two, or one where a vector has one
+// lane.
 constexpr std::size_t kDoubles = hn::MaxLanes(kDD);
 constexpr std::size_t kParts = kLanes / kDoubles;
 
-// The masks of doubles for the lanes of floats.
+// The mask of a vector of floats, as masks of the vectors of doubles for the same lanes.
 struct Parts {
   MD mask[kParts];
 
@@ -59,8 +60,8 @@ HWY_INLINE VI add_one_where(M mask, VI count) {
 #endif
 }
 
-// Of nodes that pass as a whole for every query of a packet: sixteen sums, one for each place of a
-// family, however many lanes a vector has.
+// The sums of nodes that pass as a whole for every query of a packet: sixteen sums, one for each
+// place in a family, however many lanes a vector has.
 class WholeSums {
  public:
   HWY_INLINE WholeSums() {
@@ -69,7 +70,8 @@ class WholeSums {
     }
   }
 
-  // `sums`: (3, 16) of a family; those of the places of `bits` are added.
+  // Adds the nodes of a family whose bits are set in `bits`. `sums`: the family's sums, (3, 16);
+  // `sources`: the number of sources below these nodes.
   HWY_INLINE void add(const double* sums, std::uint32_t bits, std::size_t sources) {
     sources_ += sources;
     for (std::size_t place = 0; place < kWidth; place += kLanes) {
@@ -85,7 +87,7 @@ class WholeSums {
     }
   }
 
-  // To every query.
+  // Adds these sums to those of every query of `packet`.
   HWY_INLINE void add_to(Packet& packet) const {
     if (sources_ == 0) return;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -101,7 +103,7 @@ class WholeSums {
   std::size_t sources_ = 0;
 };
 
-// Of the queries in some lanes of a packet.
+// The sums of the queries in kLanes lanes of a packet, from `lane` on.
 class Sums {
  public:
   Sums(Packet& packet, std::size_t lane) : packet_(packet), lane_(lane) {}
@@ -110,10 +112,11 @@ class Sums {
     hn::Store(hn::VecFromMask(kDI, hn::RebindMask(kDI, mask)), kDI, packet_.met_itself + lane_);
   }
 
-  // walk(add) calls add(lanes, value), which adds a value in its place of (3, 16) to some lanes.
+  // Calls walk(add). `walk` calls add(lanes, value) for each source: it adds the source's value, of
+  // which `value` points to the first component in a group's (3, 16) values, to the masked lanes.
   template <class Walk>
   HWY_INLINE void add(const Walk& walk) {
-    VD total[3][kParts];  // in registers meanwhile
+    VD total[3][kParts];  // kept in registers during the walk
     for (std::size_t c = 0; c < 3; ++c) {
       for (std::size_t part = 0; part < kParts; ++part) {
         total[c][part] = hn::Load(kDD, sum(c, part));

@@ -1,5 +1,5 @@
-// Every term of w_ij and chi in vectors: `pass` for pairs, as weights.h has them, a query a lane;
-// `judge` for a packet and a family of nodes by their bounds, a node a lane.
+// Chi and every term of w_ij as vector code. `pass` tests pairs as weights.h does, one query per
+// lane; `judge` decides by bounds for a packet and a family of nodes, one node per lane.
 #if defined(PSF_FILTER_ENGINE_TERMS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSF_FILTER_ENGINE_TERMS_INL_H
 #undef PSF_FILTER_ENGINE_TERMS_INL_H
@@ -12,13 +12,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace psf::filter::engine::HWY_NAMESPACE {
 
-// What bounds say of a term, node by node: no pair of a query and a source below passes; every one
-// does.
+// What the bounds say of a term, one node per lane: that no pair of a query and a source below the
+// node passes, or that every pair passes. Where neither is set, the pairs have to be tested.
 struct Verdict {
   M none, every;
 };
 
-// Squared distance in three columns: chi and `reflectance`.
+// Squared distance in three columns, for chi, `reflectance` and `gloss`. x, y, z are the queries'.
 struct Distance {
   V x, y, z;
 
@@ -29,7 +29,8 @@ struct Distance {
     const V dz = hn::Sub(z, source.column(2));
     return sum_of_products(dx, dx, dy, dy, dz, dz);
   }
-  // Of any query to any source below a node. first: of the three columns.
+  // For each node, an interval that holds the squared distance of every query to every source below
+  // the node. `first`: number of the first of the three columns.
   static HWY_INLINE Interval between(const PacketBounds& queries, const FamilyBounds& nodes,
                                      std::size_t first) {
     V near[3], far[3];
@@ -74,7 +75,7 @@ struct Reflectance {
   }
 };
 
-// `normal` and `direction`.
+// The terms `normal` and `direction`.
 struct Cosine {
   std::size_t first;
   V x, y, z, t;
@@ -94,7 +95,7 @@ struct Cosine {
   }
 };
 
-// `visibility` and `material`.
+// The terms `visibility` and `material`.
 struct Equal {
   std::size_t first;
   VI bits;
@@ -125,8 +126,9 @@ struct HitDistance {
     const M close = hn::Le(hn::Abs(hn::Sub(h, other)), hn::Mul(t, longer));
     return hn::Or(hn::Eq(h, other), hn::And(close, hn::IsFinite(longer)));
   }
-  // By the greatest difference and the least of the longer ones, and the other way round. Where
-  // misses (infinity) meet, differences are NaN, and no comparison holds.
+  // Every pair passes where the greatest difference is within t times the least that the longer
+  // distance can be; none where the least difference is above t times the greatest it can be. The
+  // difference of two misses (infinity) is NaN, for which no comparison holds.
   [[nodiscard]] HWY_INLINE Verdict judge(const PacketBounds& queries,
                                          const FamilyBounds& nodes) const {
     const Interval q = queries.interval(first), n = nodes.interval(first);
@@ -141,11 +143,11 @@ struct HitDistance {
 };
 
 struct Plane {
-  std::size_t normal;  // its first column; that of the sources' x is 0
-  Distance position;   // of the query
+  std::size_t normal;  // first column of the normal; the position's is 0
+  Distance position;   // x_i of the queries
   V n_x, n_y, n_z, reach;
 
-  // How far it is from the query's plane.
+  // The distance of the source from the query's plane.
   template <class Source>
   [[nodiscard]] HWY_INLINE V off(const Source& source) const {
     return hn::Abs(sum_of_products(hn::Sub(source.column(0), position.x), n_x,
@@ -169,10 +171,10 @@ struct Plane {
   }
 };
 
-// Looks at columns that do not follow each other, from the first of all on.
+// The term `gloss`. Its columns are not adjacent, so `pass` takes a source that begins at column 0.
 struct Gloss {
-  std::size_t normal, direction, width;  // first columns
-  Distance n, omega;                     // of the query
+  std::size_t normal, direction, width;  // first column of each
+  Distance n, omega;                     // n_i and omega_i of the queries
   V t, reach_sq;
 
   template <class Source>
@@ -195,8 +197,8 @@ struct Gloss {
   static HWY_INLINE V square(V reach) { return hn::Mul(reach, reach); }
 };
 
-// The terms that are on, as the queries in some lanes of a packet see them. Term k has bit k, in
-// the order of kTermNames.
+// The terms that are on, with the values of the queries in kLanes lanes of a packet, from `lane`
+// on. Term k has bit k, in the order of kTermNames.
 class Terms {
  public:
   Terms(const ColumnPlan& plan, const WeightTerms& on, const Packet& packet, std::size_t lane)
@@ -212,7 +214,7 @@ class Terms {
   [[nodiscard]] HWY_INLINE Chi chi() const {
     return {distance(0), hn::Load(kD, packet_.r_sq + lane_)};
   }
-  // For which queries the pair (i, i) passes chi and all terms.
+  // The mask of the queries i for which the pair (i, i) passes chi and all terms.
   [[nodiscard]] HWY_INLINE M self() const {
     const auto own = [this](std::size_t c) {
       return SourceALane{packet_.columns + c * kWidth + lane_};
@@ -229,7 +231,8 @@ class Terms {
     const V reach = hn::Load(kD, packet_.plane_reach + lane_);
     return {n, distance(0), column(n), column(n + 1), column(n + 2), reach};
   }
-  // Calls visit(k, term, first column of the sources that it looks at) for the terms of `bits`.
+  // Calls visit(k, term, c) for each term k of `bits`; c is the column at which the source begins
+  // that `pass` takes.
   template <class Visit>
   HWY_INLINE void each(std::uint32_t bits, const Visit& visit) const {
     const auto wants = [bits](std::size_t k) { return (bits >> k & 1) != 0; };

@@ -1,4 +1,4 @@
-// Vectors of queries, of sources and of nodes, 16 values each or fewer, as Highway has them.
+// Highway's vectors of up to 16 values: of queries, of sources, or of nodes.
 #if defined(PSF_FILTER_ENGINE_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSF_FILTER_ENGINE_VECTORS_INL_H
 #undef PSF_FILTER_ENGINE_VECTORS_INL_H
@@ -23,18 +23,18 @@ constexpr D kD;
 constexpr DI kDI;
 constexpr std::size_t kLanes = hn::MaxLanes(kD);
 
-// A source's columns, the same for every lane.
+// The columns of one source, which is the same in every lane.
 struct OneSource {
   const float* at;
   [[nodiscard]] HWY_INLINE V column(std::size_t c) const { return hn::Set(kD, at[c * kWidth]); }
 };
-// A source a lane.
+// The columns of several sources, one per lane.
 struct SourceALane {
   const float* at;
   [[nodiscard]] HWY_INLINE V column(std::size_t c) const { return hn::Load(kD, at + c * kWidth); }
 };
 
-// Between what values a column lies, in every lane.
+// The least and the greatest value of a column, in every lane.
 struct Interval {
   V low, high;
 };
@@ -59,7 +59,7 @@ struct PacketBounds {
   }
 };
 
-// The columns of the nodes of a family from `place` on, a node a lane.
+// The columns of the nodes of a family from `place` on, one node per lane.
 struct FamilyBounds {
   const float* low;
   std::size_t columns, place;
@@ -74,7 +74,7 @@ HWY_INLINE V sum_of_products(V ax, V bx, V ay, V by, V az, V bz) {
   return hn::Add(hn::Add(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Mul(az, bz));
 }
 
-// Of any value of one with any of the other.
+// The interval of the products of any value in `a` with any value in `b`.
 HWY_INLINE Interval product(const Interval& a, const Interval& b) {
   const V ll = hn::Mul(a.low, b.low), lh = hn::Mul(a.low, b.high);
   const V hl = hn::Mul(a.high, b.low), hh = hn::Mul(a.high, b.high);
@@ -99,8 +99,8 @@ HWY_INLINE M mask_of(std::uint32_t bits) {
   return hn::LoadMaskBits(kD, bytes);
 }
 
-// Writes first + the number of each bit that is set, ascending, and returns how many; writes whole
-// vectors, up to kWidth + kLanes values.
+// Writes first + k for each bit k that is set, in ascending order, and returns how many. It writes
+// whole vectors, so `out` needs room for kWidth + kLanes values.
 HWY_INLINE std::size_t list(std::uint32_t bits, std::int32_t first, std::int32_t* out) {
   std::size_t count = 0;
   for (std::size_t place = 0; place < kWidth; place += kLanes, bits >>= kLanes) {

@@ -1,4 +1,5 @@
-// A packet of queries walks the tree: what its bounds decide as a whole, the rest pair by pair.
+// A packet of queries walks the tree: nodes that bounds decide are added or skipped as a whole, and
+// the rest is tested pair by pair.
 #if defined(PSF_FILTER_ENGINE_WALK_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSF_FILTER_ENGINE_WALK_INL_H
 #undef PSF_FILTER_ENGINE_WALK_INL_H
@@ -19,8 +20,8 @@ HWY_INLINE std::uint32_t lowest_bit(std::uint32_t bits) {
   return static_cast<std::uint32_t>(std::countr_zero(bits));
 }
 
-// A bit a node of a family: whether it may have sources in the ball of some query, and whether all
-// of its are in the balls of all.
+// Two sets of nodes of a family, one bit per node: those that may have sources in the ball of some
+// query (touched), and those whose sources are all in the balls of all queries (inside).
 struct Balls {
   std::uint32_t touched = 0, inside = 0;
 
@@ -33,14 +34,14 @@ struct Balls {
   }
 };
 
-// What is to be done with the nodes of a family, a bit a node.
+// What the bounds decide for the nodes of a family, one bit per node.
 struct Judged {
-  std::uint32_t touched = 0;            // some pair may pass; of the others none does
-  std::uint32_t inside = 0;             // of those: every pair passes chi
-  std::uint32_t closed = 0;             // of those: every pair passes every term
-  std::uint32_t open[kTermCount] = {};  // by term: not known whether every pair passes
+  std::uint32_t touched = 0;            // nodes with a pair that may pass; others have none
+  std::uint32_t inside = 0;             // touched nodes of which every pair passes chi
+  std::uint32_t closed = 0;             // touched nodes of which every pair passes every term
+  std::uint32_t open[kTermCount] = {};  // by term: nodes of which some pair may not pass it
 
-  // A bit a term.
+  // The terms that are open at a node, one bit per term.
   [[nodiscard]] HWY_INLINE std::uint32_t open_at(std::uint32_t node) const {
     std::uint32_t terms = 0;
     for (std::size_t k = 0; k < kTermCount; ++k) terms |= (open[k] >> node & 1) << k;
@@ -57,19 +58,20 @@ class Judge {
   [[nodiscard]] const PacketBounds& queries() const { return queries_; }
   [[nodiscard]] HWY_INLINE bool is_reached() const { return queries_.greatest_r_sq > 0; }
 
-  // The groups of a parent that exist.
+  // The bits of the groups of a parent that exist.
   [[nodiscard]] HWY_INLINE std::uint32_t groups_of(std::size_t parent) const {
     const std::size_t count = std::min(kWidth, tree_.nodes(kGroups) - parent * kWidth);
     return (2u << (count - 1)) - 1;
   }
 
-  // Those of them that are full: all, or all but the last of all.
+  // The bits of the groups of a parent that have 16 records; only the tree's last group may have
+  // fewer.
   [[nodiscard]] HWY_INLINE std::uint32_t full_groups_of(std::size_t parent) const {
     const std::size_t count = std::min(kWidth, tree_.size() / kWidth - parent * kWidth);
     return (1u << count) - 1;
   }
 
-  // Of a family of groups or of parents, the nodes of `asked`.
+  // Judges the nodes `asked`, a bit each, of a family of groups or of parents.
   [[nodiscard]] HWY_INLINE Judged nodes(LevelName level, std::size_t family,
                                         std::uint32_t asked) const {
     const float* bounds = tree_.bounds(level, family);
@@ -101,7 +103,8 @@ class Judge {
   PacketBounds queries_;
 };
 
-// Calls visit(family, the asked of its nodes) for the families of the parents given.
+// Calls visit(family, bits) for each family that has any of the given parents; `bits` are its nodes
+// among them.
 template <class Visit>
 HWY_INLINE void each_family(std::span<const std::uint32_t> parents, const Visit& visit) {
   for (std::size_t k = 0; k < parents.size();) {
@@ -137,7 +140,8 @@ class AverageWalk {
   static constexpr std::size_t kQuad = kRecordsBelow[kQuads];
   static constexpr std::size_t kQuadsInGroup = kWidth / kQuad;
 
-  // Terms are asked where they can decide that a parent is whole; what they refuse is seen below.
+  // Judges the terms only where a parent is inside all balls and may pass as a whole; otherwise
+  // they are judged at its groups.
   HWY_INLINE void visit_parents(std::size_t family, std::uint32_t asked) {
     const Balls balls(judge_.queries(), tree_.bounds(kParents, family), tree_.plan().count);
     std::uint32_t left = balls.touched & asked;
@@ -167,7 +171,7 @@ class AverageWalk {
     }
   }
 
-  // Of the given nodes, every source for every query.
+  // Adds every source below the given nodes for every query.
   HWY_INLINE void add_whole(LevelName level, std::size_t family, std::uint32_t nodes) {
     if (nodes == 0) return;
     const std::size_t last = family * kWidth + static_cast<std::size_t>(std::bit_width(nodes)) - 1;
@@ -176,8 +180,8 @@ class AverageWalk {
                before_last * kRecordsBelow[level] + tree_.size_of(level, last));
   }
 
-  // Of the given groups, where chi alone is to be asked: adds the quads inside all balls and lists
-  // those that are neither inside nor outside.
+  // For groups of which only chi is open: adds the quads that are inside all balls for every query,
+  // and lists in quads_ those that are neither inside nor outside.
   HWY_INLINE void choose_quads(std::size_t parent, std::uint32_t groups) {
     quad_count_ = 0;
     for (std::size_t quarter = 0; quarter < kQuadsInGroup; ++quarter, groups >>= kQuadsInGroup) {
@@ -195,7 +199,7 @@ class AverageWalk {
     }
   }
 
-  // Four bits a group of four.
+  // The bits of the quads of four groups: four bits for each group.
   static HWY_INLINE std::uint32_t quads_of(std::uint32_t groups) {
     const std::uint32_t spread =
         (groups & 1) | (groups & 2) << 3 | (groups & 4) << 6 | (groups & 8) << 9;
@@ -217,7 +221,7 @@ class AverageWalk {
     });
   }
 
-  // The records of a group: each term in a loop of its own over them.
+  // Tests the records of a group, each term in a loop of its own, and adds those that pass.
   HWY_INLINE void add_group(std::size_t group, std::uint32_t open, std::size_t lane) {
     const Terms terms(tree_.plan(), on_, packet_, lane);
     const float* columns = tree_.group(group);
@@ -243,7 +247,8 @@ class AverageWalk {
   Terms terms_;
   Judge judge_;
   WholeSums whole_;
-  // Of the parent at hand. A vector is stored for every 16 quads, whatever their number.
+  // The listed quads of the parent at hand. list() stores whole vectors, so there is room for one
+  // more.
   std::int32_t quads_[(kQuadsInGroup + 1) * kWidth];
   std::size_t quad_count_ = 0;
 };

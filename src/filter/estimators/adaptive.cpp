@@ -29,7 +29,7 @@ std::array<double, kAdaptiveRadii> shares_of_radius() {
 // None where there is no such power for all.
 std::optional<std::vector<Rgb>> luminances(const Problem& problem, std::span<const Rgb> values) {
   constexpr int kLargest = 40, kLeast = -50;                          // exponents
-  float largest = 0, least = std::numeric_limits<float>::infinity();  // of those that are not 0
+  float largest = 0, least = std::numeric_limits<float>::infinity();  // luminances that are not 0
   for (const std::uint32_t j : problem.roles.sources) {
     const float y = std::abs(luminance(values[j]));
     largest = std::max(largest, y);

@@ -1,4 +1,4 @@
-// [adaptive]: a radius for every query, the largest up to which contributions agree.
+// [adaptive]: for every query the largest radius up to which contributions agree.
 #pragma once
 
 #include <span>
@@ -9,13 +9,14 @@
 
 namespace psf::filter {
 
-// Radii r_i 2^(-k/2), k below this: from r_i down to less than a tenth of it.
+// The number of radii: r_i 2^(-k/2) for k = 0 ... kAdaptiveRadii - 1; the least is below r_i / 10.
 inline constexpr std::size_t kAdaptiveRadii = 8;
-inline constexpr double kAdaptiveLeastShare = 1.0 / 16;  // of r_i: none of them is less
+inline constexpr double kAdaptiveLeastShare = 1.0 / 16;  // no radius is below this share of r_i
 
-// Of every query, one of its radii, where problem.radius has the largest; 0 elsewhere. `values` of
-// the sources, by record number, are what is averaged. Same result for any number of threads and
-// any `kind`. Throws Error{interrupted} on ^C.
+// Chooses a radius for every query; returns them by record number, 0 for other records.
+// problem.radius holds the largest radius of each query, `values` the sources' values that are
+// averaged, by record number. The result is the same for any number of threads and any `kind`.
+// Throws Error{interrupted} on ^C.
 [[nodiscard]] std::vector<float> adaptive_radii(search::Kind kind, const Problem& problem,
                                                 std::span<const Rgb> values, double agree);
 

@@ -19,29 +19,31 @@ namespace {
 using core::Clock;
 using core::seconds_since;
 
-// Of all cameras.
+// A number for the pixel of record i that is unique over all cameras.
 std::uint64_t pixel_of(const Records& records, std::uint32_t i) {
   const std::uint64_t camera = records.camera.empty() ? 0 : records.camera[i];
   return camera << 32 | records.pixel[i];
 }
 
-// The halves are of pixels, other ones in every block: all records of a pixel, shaded or not, have
-// the same control, whose noise then cancels in the pixel but for K times its number of sources.
+// The half, 0 or 1, that a record belongs to. Halves are sets of pixels, and differ from block to
+// block. All records of a pixel, shaded or not, have about the same control, whose noise cancels in
+// the pixel where K times its number of sources is the number of its records.
 unsigned half_of(const Records& records, const Block& block, std::uint32_t i) {
   return scramble(~scramble(block.first_path) ^ pixel_of(records, i)) & 1;
 }
 
-// Whether a record of this pixel is a source, with probability 1 / k: in k passes that follow each
-// other it is one of them, any of them, in every pixel by itself. So g_i, which is of other pixels,
-// is independent of it, as it would not be of a lattice's choice; and a pixel has as many sources
-// as any other.
+// Whether the record of this pixel in `pass` is chosen as a source, with probability 1 / k. Of
+// every k passes one is chosen, for each pixel by itself. So the choice is independent of g_i,
+// which comes from other pixels (a lattice's choice would not be), and all pixels have as many
+// sources.
 bool is_chosen(std::uint64_t pixel, std::uint64_t pass, std::uint32_t k) {
   const std::uint64_t coin = scramble(scramble(pass / k) ^ pixel);
   return pass % k == ((coin >> 32) * k) >> 32;
 }
 
-// beta of a control with noise: what is left of 1 where `share` of the variance of a mean over
-// `count` counts. Moments of luminance.
+// beta of a control with noise: 1 less the part of the variance of a mean over `count` sources that
+// does not cancel, `share`, over the squared mean; at least 0. `mean` and `mean_sq` are means of
+// the luminance and of its square.
 float shrunk(double share, double mean, double mean_sq, std::uint32_t count) {
   if (count < 2 || !(mean * mean > 0)) return share > 0 ? 0.0f : 1.0f;
   const double variance = std::max(0.0, mean_sq - mean * mean) / (count - 1);
@@ -75,7 +77,8 @@ class Control {
   }
 
  private:
-  // Who is a source, and k_, one over its probability; 0 where the block has none to begin with.
+  // Chooses the sources, and sets k_ to one over their probability, or leaves it where the block
+  // has no shaded record.
   void choose() {
     Parameters all = p_;
     all.sources = 1;
@@ -107,15 +110,15 @@ class Control {
     counts.sources = roles_.sources.size();
   }
 
-  // Of the noise of a control, what does not cancel among the records of a pixel, since the block
-  // has not k_ passes for each of its sources.
+  // The share of a control's noise that does not cancel among the records of a pixel, because the
+  // block's passes are not a multiple of k_.
   [[nodiscard]] double noise_share() const {
     const double k = static_cast<double>(k_), passes = std::max(1.0, block_.samples_per_pixel);
     const double rest = std::fmod(passes, k);
     return rest * (k - rest) / (passes * (k - 1));
   }
 
-  // beta g_i, into c_bar, of the records that are not of `half`, from the sources that are.
+  // Writes beta g_i to c_bar for the records that are not in `half`, from the sources that are.
   void set_controls(unsigned half) {
     const auto start = Clock::now();
     Roles roles;
@@ -124,7 +127,7 @@ class Control {
       const bool source = roles.of[i] == Role::source, inside = half_of(r_, block_, i) == half;
       if (source && inside) roles.sources.push_back(i);
       if (source && !inside) roles.of[i] = Role::query;
-      // Engines want sources among the queries; what they get is not looked at.
+      // An engine needs its sources among the queries; their results are not used.
       if ((source && inside) || (!inside && radius_[i] * radius_[i] > 0))
         roles.queries.push_back(i);
     }
@@ -140,7 +143,7 @@ class Control {
     if (p_.demodulate) values = demodulated(r_, roles);
     std::vector<Rgb> means(r_.size()), moments(r_.size());
     std::vector<std::uint32_t> counts(r_.size());
-    Statistics unused;  // of other queries too
+    Statistics unused;  // the engine counts queries of `half` as well
     engine->average(values, false, means, counts, unused);
     for (const std::uint32_t j : roles.sources) {
       const float y = luminance(values[j]);

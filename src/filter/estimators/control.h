@@ -1,4 +1,4 @@
-// [control]: c_bar of one half of the sources as control variate of the other.
+// [control]: c_bar from one half of the sources as control variate of the other half.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,13 @@
 
 namespace psf::filter {
 
-// K_file, the whole number that the share of shaded records is one over. Throws Error{bad_input}
-// where it is near none, so that no record's probability of being shaded is known.
+// The whole number next to queries / shaded: one over a record's probability of being shaded.
+// Throws Error{bad_input} where the quotient is not near a whole number, so that the probability is
+// not known.
 [[nodiscard]] std::uint32_t shade_rate(std::uint64_t queries, std::uint64_t shaded);
 
-// What average() returns for this estimator: c_bar holds c'_i, which may be negative; neighbors are
-// the sources of g_i.
+// Computes what average() returns for this estimator. c_bar holds c'_i, which may be negative;
+// `neighbors` holds the number of sources of g_i.
 [[nodiscard]] Average control(const Records& records, std::span<const float> radius,
                               const Block& block, const Parameters& parameters);
 

@@ -135,7 +135,7 @@ class HashEngine final : public Engine {
   const Problem& p_;
   search::Kind kind_;
   KeyMaker keys_;
-  Grid grid_;                         // of all queries
+  Grid grid_;                         // the cells of all queries
   std::vector<std::uint32_t> alone_;  // queries with r_i = 0
 };
 

@@ -7,9 +7,10 @@
 
 namespace psf::filter {
 
-// After Binder, Fricke and Keller, Massively Parallel Path Space Filtering, 2019; README.md says
-// what differs. `scale`: [radius] without f_i, > 0. `first_path`: path number of record 0.
-// `problem` must outlive the engine. average() cannot count refusals: there is no ball.
+// An engine after Binder, Fricke and Keller, Massively Parallel Path Space Filtering, 2019;
+// README.md says what differs. `scale`: [radius] without f_i, > 0. `first_path`: path number of
+// record 0. `problem` must outlive the engine. Its average() cannot count refusals, because there
+// is no ball.
 [[nodiscard]] std::unique_ptr<Engine> make_hash(search::Kind kind, const Problem& problem,
                                                 double scale, std::uint64_t first_path);
 

@@ -1,4 +1,4 @@
-// Records with equal keys, brought together.
+// Brings records with equal keys together in cells.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,8 @@
 
 namespace psf::filter {
 
-// Cell k has members [first[k], first[k + 1]), numbers of keys, ascending.
+// The members of cell k are members[first[k]] to members[first[k + 1] - 1]: numbers of keys,
+// ascending.
 struct Cells {
   std::vector<std::uint32_t> members, first;
   [[nodiscard]] std::size_t count() const { return first.size() - 1; }
@@ -18,9 +19,10 @@ struct Cells {
   }
 };
 
-// Hashes bring the keys of a cell together; whether they are equal the keys themselves say, so two
-// cells never mix, even where their hashes are the same. Time grows with the number of keys. The
-// same for any number of threads. `hash_mask`: bits of the hash in use, all but in tests.
+// Groups equal keys. Hashes bring keys together, but the keys themselves are compared, so two cells
+// never mix even where their hashes are equal. Time is proportional to the number of keys. The
+// result is the same for any number of threads. `hash_mask`: the bits of the hash in use; only
+// tests use fewer than all.
 [[nodiscard]] Cells group_equal(std::span<const CellKey> keys, std::uint64_t hash_mask = ~0ull);
 
 }  // namespace psf::filter

@@ -1,4 +1,4 @@
-// One block of an explanation: whom each of the pixel's paths averages, and whom it refuses.
+// One block of an explanation: the sources that each of the pixel's paths averages or refuses.
 #pragma once
 
 #include <atomic>
@@ -17,24 +17,24 @@
 
 namespace psf::study {
 
-// Record numbers are those within the block, in ExplainedPath::vertex and ExplainedPair::vertex
-// too.
+// All record numbers count within the block, also in ExplainedPath::vertex and
+// ExplainedPair::vertex.
 class BlockExplainer {
  public:
   // Filters the whole block, as psf filter does. The records' columns and the parameters must
-  // outlive it.
+  // outlive the explainer.
   BlockExplainer(const filter::Records& records, const filter::Block& block,
                  const filter::Parameters& parameters);
 
-  // Path i, and its pairs, ascending. Thread-safe. Takes the pairs in the ball off `room`; throws
-  // Error{limit} where there is none left.
+  // Returns path i, and appends its pairs to `pairs`, ascending by source. Subtracts the pairs in
+  // the ball from `room`, and throws Error{limit} where it falls below 0. Thread-safe.
   [[nodiscard]] ExplainedPath explain(std::uint32_t i, std::vector<ExplainedPair>& pairs,
                                       std::atomic<std::int64_t>& room) const;
 
   [[nodiscard]] bool is_source(std::uint32_t j) const {
     return roles_.of[j] == filter::Role::source;
   }
-  // What is averaged of it.
+  // The value of source j that is averaged.
   [[nodiscard]] Rgb value(std::uint32_t j) const;
 
  private:
@@ -50,8 +50,8 @@ class BlockExplainer {
   std::vector<Rgb> before_;             // c_bar of the iteration before the last
   std::vector<float> radius_in_world_;  // r_i, as chosen, world units
   std::optional<filter::Scaled> scaled_;
-  filter::Records records_;        // in its unit
-  std::span<const float> radius_;  // likewise
+  filter::Records records_;        // in the unit of scaled_
+  std::span<const float> radius_;  // in the unit of scaled_
   std::optional<filter::Weights> weights_;
   filter::Roles roles_;
   std::vector<float> area_;                 // A_j of [disk]

@@ -45,7 +45,8 @@ std::vector<Point> points_of(const Explanation& e, const Whence& whence) {
   return points;
 }
 
-// Of several refusers that each refuse it in another ball, none refuses it in every one.
+// The lowest term of `bits`, the terms that refuse a vertex in every ball. Where there is none,
+// because different terms refuse it in different balls, the lowest term of `any`.
 std::size_t first_term(std::uint32_t bits, std::uint32_t any) {
   const std::uint32_t of = bits != 0 ? bits : any;
   std::size_t k = 0;

@@ -32,7 +32,8 @@ Colour wide(const Vec3& v) {
   return {double{v.x}, double{v.y}, double{v.z}};
 }
 
-// Of a term that `on` has not, or has looser. Empty where the file lacks its channel.
+// The thresholds to try for a term: those that are stricter than its threshold in use, if any.
+// Empty where the file lacks the term's channel.
 std::span<const float> ladder(const Explanation& e, std::size_t term) {
   const filter::WeightTerms& on = e.request.parameters.weights;
   const BlockRecords& v = e.vertices;

@@ -1,4 +1,5 @@
-// What an explained pixel would be with other weights, and which term would have refused a leak.
+// The value that an explained pixel would have with other weights, and the terms that would have
+// refused a leak.
 #pragma once
 
 #include <array>
@@ -9,17 +10,17 @@
 
 namespace psf::study {
 
-// By term of filter::kTermNames.
+// Whether each term of filter::kTermNames is on.
 [[nodiscard]] std::array<bool, filter::kTermCount> terms_on(const filter::WeightTerms& terms);
 
-// The pixel if others of the pairs in the balls were averaged.
+// The value of the pixel if other pairs in the balls were averaged.
 class PixelIf {
  public:
   explicit PixelIf(const Explanation& explanation) : e_(explanation) {}
 
   [[nodiscard]] Colour unfiltered(std::uint32_t vertex) const;  // u_i
-  // `accepts` says of a pair in a ball, not the path's own, whether it is averaged. A path that is
-  // left without any keeps what it has.
+  // The pixel if exactly those pairs were averaged for which `accepts` is true, and the pairs of a
+  // path with itself. A path that is left without any pair keeps its average.
   template <typename Accepts>
   [[nodiscard]] Colour operator()(Accepts accepts) const {
     Colour sum(0, 0, 0);
@@ -51,7 +52,8 @@ class PixelIf {
   const Explanation& e_;
 };
 
-// Whence::remedies. leaking[v]: vertex v is one of the sources that make up the difference.
+// Finds Whence::remedies. leaking[v]: whether vertex v is one of the sources that make up the
+// difference.
 [[nodiscard]] std::vector<Remedy> find_remedies(const Explanation& explanation,
                                                 const PixelIf& pixel_if,
                                                 const std::vector<bool>& leaking);

@@ -106,7 +106,7 @@ class Tracer {
         e_.pairs.begin(), e_.pairs.end(), [](const auto& pair) { return pair.in_ball; }));
   }
 
-  // Of one averaged pair; they sum to the difference.
+  // The excess of one averaged pair. The excesses of all pairs sum to the difference.
   [[nodiscard]] Colour excess_of(const ExplainedPair& pair) const {
     const ExplainedPath& path = e_.paths[pair.path];
     const auto n = static_cast<double>(result_.pixel.paths);
@@ -174,6 +174,7 @@ class Tracer {
     apart.material = has(e_.vertices.material);
     apart.hit_distance.reset();
     apart.direction.reset();
+    apart.gloss.reset();
     const filter::Weights weights(e_.vertices.view(), apart);
     std::map<std::uint32_t, KindShare> kinds;
     std::map<std::pair<std::uint16_t, std::uint32_t>, PixelShare> pixels;

@@ -1,5 +1,5 @@
-// Whence a pixel's light came: who raised or lowered it against what its own paths say, what tells
-// those apart, and what would have refused them.
+// Where a pixel's light came from: the sources that raised or lowered it against its own paths, the
+// features in which these sources differ, and the terms that would have refused them.
 #pragma once
 
 #include <cstdint>
@@ -14,67 +14,68 @@ namespace psf::study {
 using Colour = Imath::V3d;  // linear, Rec. 709 primaries
 [[nodiscard]] double luminance(const Colour& colour);
 
-// Of the N paths that are part of the pixel.
+// Sums over the N paths that are part of the pixel.
 struct PixelSums {
   std::uint64_t paths = 0;      // N
   Colour filtered{0, 0, 0};     // [pixel]
-  std::uint64_t own_paths = 0;  // of them, those with a radiance of their own
-  std::optional<Colour> own;    // their mean, unfiltered
-  double own_error = 0;         // standard error of the part of its luminance that is averaged,
-                                // alpha_i c_i; 0 for a single path
-  std::size_t brightest = 0;    // the path with most luminance of its own, place in ::paths
-  double brightest_share = 0;   // of `own`
+  std::uint64_t own_paths = 0;  // number of paths that have an unfiltered radiance
+  std::optional<Colour> own;    // mean of these paths' unfiltered radiance
+  double own_error = 0;         // standard error of the mean luminance of alpha_i c_i; 0 for a
+                                // single path
+  std::size_t brightest = 0;    // place in ::paths of the path with most unfiltered luminance
+  double brightest_share = 0;   // share of that path in `own`
   Colour baseline{0, 0, 0};     // o = sum alpha_i c_i / sum alpha_i over its own sources
-  Colour difference{0, 0, 0};   // sum alpha_i (c_bar_i - o) / N: filtered - own where no path
-                                // lacks a contribution
+  Colour difference{0, 0, 0};   // sum alpha_i (c_bar_i - o) / N; it is filtered - own where every
+                                // path has a contribution
 };
 
-// A source j over all paths that average it.
+// A source j, summed over all paths that average it.
 struct SourceShare {
   std::uint32_t vertex = 0, paths = 0;
-  std::size_t pair = 0;    // that with most excess
+  std::size_t pair = 0;    // the pair with most excess
   Colour share{0, 0, 0};   // what it adds to the pixel: sum alpha_i c_j / (count_i N)
-  Colour excess{0, 0, 0};  // beyond what o in its place would add; they sum to the difference
+  Colour excess{0, 0, 0};  // what it adds beyond o in its place; the excesses sum to the difference
 };
 
-// The sources of one pixel; means over pairs.
+// The sources that lie in one pixel; angle to plane are means over pairs.
 struct PixelShare {
   std::uint16_t camera = 0;
   std::uint32_t pixel = 0;  // y * width + x
   std::uint64_t sources = 0, pairs = 0, leaking = 0;
   Colour share{0, 0, 0}, excess{0, 0, 0};
   double angle = 0;                 // between the normals, degrees
-  double reflectance = 0;           // difference
+  double reflectance = 0;           // norm of the difference
   double lights = 0, material = 0;  // share of pairs that differ
   double plane = 0;                 // signed distance off the tangent plane of x_i, in radii
 };
 
-// Averaged pairs, the path's own left out, by the set of terms that would tell them apart at these
-// thresholds: those of the run, or the filter's defaults, kPlaneApart for `plane`.
+// The averaged pairs, without those of a path with itself, by the set of terms that would tell the
+// two records apart. The thresholds are those of the run, or the filter's defaults, and kPlaneApart
+// for `plane`.
 inline constexpr float kPlaneApart = 0.25f;
 struct KindShare {
-  std::uint32_t terms = 0;  // bit k: term k of filter::kTermNames; never hit-distance, direction
+  std::uint32_t terms = 0;  // bit k: term k of kTermNames; never hit-distance, direction, gloss
   std::uint64_t pairs = 0, leaking = 0;
   Colour excess{0, 0, 0};
 };
 
-// The radii stay as they are, also where `adaptive` would choose others.
+// TermRefusals and Remedy leave the radii as they are, also where `adaptive` would choose others.
 
-// A term that is on: of the pairs in the balls, those it refuses at all, and those that no other
-// refuses; and the pixel without it.
+// For a term that is on: the number of pairs in the balls that it refuses, the number that it alone
+// refuses, and the pixel without the term.
 struct TermRefusals {
   std::size_t term = 0;
   std::uint64_t refused = 0, alone = 0;
   Colour without{0, 0, 0};
 };
 
-// A term at a threshold that it does not have: the best one of a ladder for telling the sources
-// that leak from the others. `visibility` and `material` have none.
+// A term with another threshold than in the run: of a list of thresholds, the one that best tells
+// the sources that leak from the others. `visibility` and `material` have no threshold.
 struct Remedy {
   std::size_t term = 0;
   std::optional<float> threshold;
   std::uint64_t leaking = 0, others = 0;  // averaged pairs that it would also refuse
-  Colour pixel{0, 0, 0};                  // what it would be
+  Colour pixel{0, 0, 0};                  // value of the pixel with this term
   [[nodiscard]] double gain(std::uint64_t all_leaking, std::uint64_t all_others) const;
 };
 
@@ -82,33 +83,34 @@ struct Whence {
   PixelSums pixel;
   std::uint64_t candidates = 0;  // pairs in the balls
   std::vector<TermRefusals> refusals;
-  // Averaged sources, those that push the pixel the way it went first.
+  // The averaged sources. Those that push the pixel in the direction of the difference come first.
   std::vector<SourceShare> sources;
-  // The fewest of them, from the first on, whose excesses make up the difference; and the averaged
-  // pairs they and the others are in, without the paths' own.
+  // `leak` is the least number of sources, from the first on, whose excesses make up the
+  // difference. The others are the numbers of averaged pairs with these sources and with all
+  // others, without the pairs of paths with themselves.
   std::size_t leak = 0;
   std::uint64_t leak_pairs = 0, other_pairs = 0;
-  std::vector<PixelShare> pixels;  // in the same order
-  std::vector<KindShare> kinds;    // in the same order
+  std::vector<PixelShare> pixels;  // in the same order as `sources`
+  std::vector<KindShare> kinds;    // in the same order as `sources`
   std::vector<Remedy> remedies;    // best first; without those that refuse nothing
 };
 
 [[nodiscard]] Whence whence(const Explanation& explanation);
 
-// What a pair adds to the pixel of N paths.
+// What a pair adds to a pixel of `paths` paths.
 [[nodiscard]] Colour share_of(const Explanation& explanation, const ExplainedPair& pair,
                               std::uint64_t paths);
 
-// What tells a source from the vertex it is averaged into; not set where the file has no such
-// channel.
+// The differences between a source and the vertex that averages it; not set where the file lacks
+// the channel.
 struct PairFeatures {
   std::optional<double> angle;          // between the normals, degrees
   std::optional<double> reflectance;    // norm of the difference
   std::optional<std::uint32_t> lights;  // visibility bits that differ
   std::optional<double> hit_distance;   // relative difference; infinity: one is a miss
-  std::optional<double> plane;          // signed, in radii; > 0 on the normal's side
-  std::optional<double> direction;      // angle between, degrees
-  std::optional<bool> material;         // differs
+  std::optional<double> plane;          // distance off the plane in radii; > 0 on the normal's side
+  std::optional<double> direction;      // angle between the directions, degrees
+  std::optional<bool> material;         // whether the materials differ
 };
 [[nodiscard]] PairFeatures features_of(const Explanation& explanation, const ExplainedPair& pair);
 

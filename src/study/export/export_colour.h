@@ -12,25 +12,25 @@
 
 namespace psf::study {
 
-// By channel: `reflectance` and `roughness` are shown as they are, sRGB-encoded; `normal`,
-// `direction` and octahedral vectors as (v + 1) / 2; whole numbers by a colour each; all other
-// floats, one as grey or three as red, green and blue, are multiplied by 2^stops, tone-mapped and
-// sRGB-encoded like the PNG pictures (film/display.h). What is not a number is black.
+// The colour depends on the channel: `reflectance` and `roughness` are sRGB-encoded; `normal`,
+// `direction` and octahedral vectors become (v + 1) / 2; each whole number has a colour of its own;
+// all other floats, one as grey or three as red, green and blue, are multiplied by 2^stops,
+// tone-mapped and sRGB-encoded like PNG pictures (film/display.h). NaN is black.
 class PointColours {
  public:
-  // `name`: a channel or `radiance`. Throws Error{bad_input} where the file lacks a channel or no
-  // colour can be made of it.
+  // `name`: a channel or `radiance`. Throws Error{bad_input} where the file lacks the channel or it
+  // cannot become a colour.
   PointColours(const ExportRecords& records, const std::string& name);
 
-  // Reads selected records [first, first + count).
+  // Reads the selected records [first, first + count).
   void read(std::uint64_t first, std::size_t count);
   [[nodiscard]] std::array<std::uint8_t, 3> at(std::size_t k) const;
 
-  // Whether stops matter.
+  // Whether the colours depend on the exposure.
   [[nodiscard]] bool is_exposed() const { return kind_ == Kind::exposed; }
   [[nodiscard]] Rgb linear(std::size_t k) const;  // before exposure
   void set_exposure(float stops);
-  // Bytes that a record takes in memory.
+  // The bytes that a record takes in memory.
   [[nodiscard]] std::size_t bytes() const;
 
  private:

@@ -13,7 +13,7 @@ namespace psf::study {
 
 class ExportFile {
  public:
-  // `path` is opened, emptied; `shown` stands in messages. Throws Error{io}, as all do.
+  // Opens and empties `path`; messages call the file `shown`. Every function throws Error{io}.
   ExportFile(const std::string& path, std::string shown);
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text) { write(std::as_bytes(std::span(text))); }

@@ -25,8 +25,8 @@ constexpr float kMiddleGrey = 0.18f;
 // A channel written besides, as floats or doubles.
 struct Scalars {
   std::size_t channel = 0, components = 1;
-  formats::Type type = formats::Type::f32;  // of the stored values, unless `floats`
-  bool floats = false, wide = false;        // wide: doubles
+  formats::Type type = formats::Type::f32;  // type of the stored values, unless `floats`
+  bool floats = false, wide = false;        // wide: written as doubles
   std::vector<std::byte> stored;
   std::vector<float> values;
 
@@ -208,7 +208,7 @@ class Cloud {
   std::vector<Scalars> scalars_;
   std::vector<float> positions_, normals_;
   std::vector<std::byte> flag_values_;
-  std::vector<std::size_t> points_;  // of the batch
+  std::vector<std::size_t> points_;  // records of the batch that become points
 };
 
 }  // namespace

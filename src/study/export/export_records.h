@@ -1,4 +1,4 @@
-// The records of a dump that an export writes: a range of passes, thinned, read in batches.
+// The records of a dump that an export writes: every K-th of a range of passes, read in batches.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 namespace psf::study {
 
 struct ExportSelection {
-  std::vector<std::string> channels;  // by name; empty: what the format has by default
+  std::vector<std::string> channels;  // names; empty: the default of the export's format
   PassSelection passes;
   std::uint64_t every = 1;  // write every K-th of the records, from the first on
 };
@@ -27,23 +27,25 @@ class ExportRecords {
   [[nodiscard]] const formats::Reader& reader() const { return reader_; }
   [[nodiscard]] std::uint64_t size() const { return size_; }
   [[nodiscard]] std::uint64_t passes() const { return passes_; }
-  // Place in the file of selected record k.
+  // The place in the file of selected record k.
   [[nodiscard]] std::uint64_t record(std::uint64_t k) const { return first_ + k * every_; }
   [[nodiscard]] std::uint32_t pass(std::uint64_t k) const;
 
-  // Channels by name, in the order given; Error{bad_input} that lists those of the file.
+  // The channels with these names, in the order given. Throws Error{bad_input} that lists the
+  // file's channels where one is missing.
   [[nodiscard]] std::vector<std::size_t> find(std::span<const std::string> names) const;
-  // The same; without names all channels of the file.
+  // The channels with these names, or all channels of the file where there are no names.
   [[nodiscard]] std::vector<std::size_t> find_or_all(std::span<const std::string> names) const;
 
-  // Selected records [k, k + count) as stored, or as floats (f16, f32, f64, octahedral).
+  // Reads a channel of the selected records [k, k + count), as stored, or as floats (f16, f32, f64
+  // and octahedral).
   void read(std::size_t channel, std::uint64_t k, std::size_t count,
             std::vector<std::byte>& out) const;
   void read_floats(std::size_t channel, std::uint64_t k, std::size_t count,
                    std::vector<float>& out) const;
 
-  // How many records to take at a time so that they and what is read to find them are at most
-  // 64 MiB; `bytes` of a record, as it is kept in memory.
+  // The number of records to take at a time, so that these records and the bytes read for them are
+  // at most 64 MiB. `bytes`: the size of a record in memory.
   [[nodiscard]] std::size_t batch(std::size_t bytes) const;
 
  private:
@@ -51,9 +53,9 @@ class ExportRecords {
   std::uint64_t first_ = 0, size_ = 0, passes_ = 0, every_ = 1;
 };
 
-// "position_x", "reflectance_r", "distance": component c of the value that a reader gets.
+// The name of component c of a channel, as read: "position_x", "reflectance_r", "distance".
 [[nodiscard]] std::string component_name(const formats::Channel& channel, std::size_t c);
-// f16, f32, f64, or octahedral, which is read as three floats.
+// Whether a channel is f16, f32, f64, or octahedral, which is read as three floats.
 [[nodiscard]] bool is_float(const formats::Channel& channel);
 
 }  // namespace psf::study

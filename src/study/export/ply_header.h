@@ -15,7 +15,8 @@ struct PlyProperty {
   std::string name;
 };
 
-// The rows that follow hold the properties in this order, packed, little-endian.
+// The text of the header. The rows that follow it hold the properties in this order, packed and
+// little-endian.
 [[nodiscard]] inline std::string ply_header(std::string_view comment, std::uint64_t points,
                                             std::span<const PlyProperty> properties) {
   std::string text = fmt::format(

@@ -12,8 +12,8 @@ namespace psf::study {
 
 inline constexpr const char* kColorMaps[] = {"inferno", "magma", "plasma", "viridis", "turbo"};
 
-// The colour of `value` in [0, 1], clamped, as 8-bit sRGB: that of the map at every 16th part, on
-// straight lines between them. Throws Error{usage} for a name that is not in kColorMaps.
+// The colour of `value`, clamped to [0, 1], as 8-bit sRGB. It is the map's own colour at multiples
+// of 1/16, and linear between them. Throws Error{usage} for a name that is not in kColorMaps.
 [[nodiscard]] std::array<std::uint8_t, 3> mapped_color(std::string_view map, double value);
 
 }  // namespace psf::study

@@ -10,8 +10,8 @@
 
 namespace psf::study {
 
-// Linear R, G, B of the screen in [0, 1]: times 2^exposure, the tone curve of film/display.h. Not
-// rounded to 8 bits.
+// The linear R, G, B of the screen in [0, 1]: the picture times 2^exposure through tone_map() of
+// film/display.h, not rounded to 8 bits.
 using Displayed = std::array<Plane, 3>;
 
 [[nodiscard]] Displayed displayed(std::span<const Rgb> picture, std::size_t width, float exposure);

@@ -30,7 +30,8 @@ std::size_t trimmed_count(std::size_t count, double share) {
   return static_cast<std::size_t>(std::llround(share * static_cast<double>(count)));
 }
 
-// Of `values` but the `left_out` largest. Which of equal ones are left out makes no difference.
+// The mean of `values` without the `left_out` largest. Which of equal values are left out makes no
+// difference.
 double mean_of_smallest(const std::vector<double>& values, std::size_t left_out) {
   const std::size_t kept = values.size() - std::min(left_out, values.size());
   if (kept == 0) return std::numeric_limits<double>::quiet_NaN();

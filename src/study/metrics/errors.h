@@ -16,30 +16,32 @@ struct Region {  // pixels [x, x + width) x [y, y + height), row 0 at the top
   std::size_t x = 0, y = 0, width = 0, height = 0;
 };
 
-// Which pixels a mean is over.
+// The pixels that a mean is taken over.
 struct Choice {
-  std::optional<Region> region;  // inside the picture; without: all of it
-  double trim = 0;  // this share of them, in [0, 1), is left out: the largest errors of each metric
+  std::optional<Region> region;  // inside the picture; not set: the whole picture
+  double trim = 0;  // share of the pixels, in [0, 1), to leave out: those with the largest errors
 };
 
 class Errors {
  public:
-  // Zero everywhere for the metrics given.
+  // Errors of 0 at every pixel, for the given metrics.
   Errors(std::size_t width, std::size_t height, std::span<const Metric> metrics);
 
   [[nodiscard]] std::size_t width() const { return width_; }
   [[nodiscard]] std::size_t height() const { return height_; }
   [[nodiscard]] bool has(Metric metric) const { return !map(metric).empty(); }
 
-  // (height, width), in the metric's own measure but: PSNR has the errors of MSE, SSIM is 1 - SSIM.
+  // The errors, (height, width), in the metric's own measure, except that PSNR has those of MSE,
+  // and SSIM has 1 - SSIM.
   [[nodiscard]] std::span<const double> map(Metric metric) const;
   [[nodiscard]] std::span<double> map(Metric metric);
-  // (height, width), not 0 where the picture or the reference is not finite: in no mean.
+  // (height, width): not 0 where the picture or the reference is not finite. Such pixels are in no
+  // mean.
   [[nodiscard]] std::span<const std::uint8_t> non_finite() const { return non_finite_; }
   [[nodiscard]] std::span<std::uint8_t> non_finite() { return non_finite_; }
 
-  // Of SSIM only pixels count whose whole window lies in the picture (Wang 2004), unless the choice
-  // has none of these.
+  // The means over the chosen pixels. For SSIM only pixels whose whole window lies in the picture
+  // count (Wang 2004), unless there is none among those chosen.
   [[nodiscard]] Metrics mean(const Choice& choice = {}) const;
 
  private:

@@ -13,18 +13,19 @@ namespace psf::study {
 // Linear sRGB to X / Xn, Y / Yn, Z / Zn: rows of the primaries' matrix, each divided by its sum.
 class FlipColor {
  public:
-  // Y, Cx, Cz: linear in the colour, as the filters need it.
+  // Linear sRGB to Y, Cx, Cz. These are linear in the colour, as the filters need.
   [[nodiscard]] Vec3 opponent(const Vec3& linear) const {
     const Vec3 v = linear * to_white_;
     return {116 * v.y - 16, 500 * (v.x - v.y), 200 * (v.y - v.z)};
   }
-  // Back, clamped to what a screen can show.
+  // Y, Cx, Cz back to linear sRGB, clamped to [0, 1].
   [[nodiscard]] Vec3 linear(const Vec3& opponent) const {
     const float y = (opponent.x + 16) / 116;
     const Vec3 v = Vec3(y + opponent.y / 500, y, y - opponent.z / 200) * from_white_;
     return {std::clamp(v.x, 0.0f, 1.0f), std::clamp(v.y, 0.0f, 1.0f), std::clamp(v.z, 0.0f, 1.0f)};
   }
-  // L*, and a*, b* times L* / 100: what is dark looks less colourful (Hunt).
+  // Linear sRGB to L*, a* and b*, where a* and b* are multiplied by L* / 100, since dark colours
+  // look less colourful (Hunt).
   [[nodiscard]] Vec3 hunt_lab(const Vec3& linear) const {
     const Vec3 v = linear * to_white_;
     const float x = root(v.x), y = root(v.y), z = root(v.z);
@@ -48,7 +49,7 @@ class FlipColor {
   Imath::M33f to_white_{matrix()}, from_white_{matrix().inverse()};
 };
 
-// City-block in lightness, Euclidean in colour (Abasi 2020).
+// The distance HyAB of two colours: city-block in lightness, Euclidean in a* and b* (Abasi 2020).
 [[nodiscard]] inline float hyab(const Vec3& a, const Vec3& b) {
   const Vec3 d = a - b;
   return std::abs(d.x) + std::sqrt(d.y * d.y + d.z * d.z);

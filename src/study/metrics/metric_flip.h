@@ -11,7 +11,7 @@ namespace psf::study {
 class Flip {
  public:
   Flip(const Displayed& reference, double pixels_per_degree);
-  // FLIP of every pixel, in [0, 1], into `errors`, (height, width).
+  // Writes FLIP of every pixel, in [0, 1], to `errors`, (height, width).
   void measure(const Displayed& picture, std::span<double> errors) const;
 
  private:
@@ -22,7 +22,7 @@ class Flip {
   };
   struct Features {
     Displayed color;    // L*, a*, b* as the eye sees them from this distance, Hunt-adjusted
-    Plane edge, point;  // how much of an edge or a point is there
+    Plane edge, point;  // strength of edges and of points
   };
   [[nodiscard]] static Kernels kernels(double pixels_per_degree);
   [[nodiscard]] Features features(const Displayed& picture) const;

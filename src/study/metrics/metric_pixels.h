@@ -1,4 +1,4 @@
-// The metrics that look at one pixel at a time.
+// The metrics that compare one pixel at a time.
 #pragma once
 
 #include <span>
@@ -8,7 +8,8 @@
 
 namespace psf::study {
 
-// Into the maps that `errors` has of relMSE, MSE, SMAPE and MAPE: each pixel's mean over R, G, B.
+// Writes the errors of every pixel, each the mean over R, G, B, to those of the maps of relMSE,
+// MSE, SMAPE and MAPE that `errors` has.
 void measure_pixels(std::span<const Rgb> picture, std::span<const Rgb> reference, double epsilon,
                     Errors& errors);
 

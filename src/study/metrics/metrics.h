@@ -1,5 +1,4 @@
-// The metrics that a picture is measured with against a reference: their names, what they depend
-// on, and a value of each.
+// The metrics that compare a picture with a reference: their names, options and values.
 #pragma once
 
 #include <array>
@@ -25,41 +24,41 @@ inline constexpr std::size_t kMetricCount = 7;
 inline constexpr std::array<Metric, kMetricCount> kAllMetrics = {
     Metric::rel_mse, Metric::mse,  Metric::smape, Metric::mape,
     Metric::psnr,    Metric::ssim, Metric::flip};
-// Those that look at one pixel at a time: an eighth of the time of all.
+// The metrics that compare one pixel at a time; they take an eighth of the time of all metrics.
 inline constexpr std::array<Metric, 5> kPixelMetrics = {Metric::rel_mse, Metric::mse, Metric::smape,
                                                         Metric::mape, Metric::psnr};
 
 struct MetricOptions {
-  // Where the reference is dark, relative errors count absolute error: the usual guard against
-  // division by zero.
+  // Added to the denominators of relative errors, against division by zero: where the reference is
+  // dark, they measure absolute error.
   double epsilon = 1e-2;
-  // What SSIM and FLIP see: both pictures times 2^exposure through the tone curve of
+  // For SSIM and FLIP, in stops: they compare both pictures times 2^exposure, through tone_map() of
   // film/display.h.
   float exposure = 0;
-  // FLIP's distance: 67, a 4K screen of 0.7 m at 0.7 m.
+  // For FLIP: 67 pixels per degree are a 4K screen, 0.7 m wide, seen from 0.7 m.
   double pixels_per_degree = 3840 * 3.14159265358979323846 / 180;
 
   void validate() const;  // throws Error{usage}
 };
 
-// "relMSE", "MSE", "SMAPE", "MAPE", "PSNR", "SSIM", "FLIP".
+// The name of a metric: "relMSE", "MSE", "SMAPE", "MAPE", "PSNR", "SSIM" or "FLIP".
 [[nodiscard]] const char* name(Metric metric);
-// From its name in upper or lower case; throws Error{usage} with the names there are.
+// The metric of a name in upper or lower case. Throws Error{usage} that lists the names.
 [[nodiscard]] Metric parse_metric(std::string_view text);
 [[nodiscard]] bool lower_is_better(Metric metric);
-// What its value depends on, as text: "epsilon 0.01"; empty where it is nothing.
+// The options that a metric depends on, as text: "epsilon 0.01"; empty where there are none.
 [[nodiscard]] std::string settings(Metric metric, const MetricOptions& options);
 
-// A value of each metric; not-a-number for what was not asked for, or where no pixel was left.
+// A value of each metric; NaN for metrics that were not asked for, or where no pixel was left.
 struct Metrics {
   Metrics() { values.fill(std::numeric_limits<double>::quiet_NaN()); }
   double operator[](Metric metric) const { return values[static_cast<std::size_t>(metric)]; }
   double& operator[](Metric metric) { return values[static_cast<std::size_t>(metric)]; }
 
   std::array<double, kMetricCount> values;
-  std::size_t pixels = 0;      // measured: of the region, finite, not trimmed
-  std::size_t trimmed = 0;     // left out because their error is largest, by each metric its own
-  std::size_t non_finite = 0;  // left out because picture or reference is not finite there
+  std::size_t pixels = 0;      // number of pixels measured: in the region, finite, not trimmed
+  std::size_t trimmed = 0;     // number left out by each metric because their errors are largest
+  std::size_t non_finite = 0;  // number left out because picture or reference is not finite
 };
 
 }  // namespace psf::study

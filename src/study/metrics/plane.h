@@ -8,8 +8,8 @@
 
 namespace psf::study {
 
-// Rows are padded to whole chunks, so that inner loops have a length the compiler knows. What is in
-// the padding means nothing.
+// Rows are padded to whole chunks, so that the compiler knows the length of inner loops. The values
+// in the padding mean nothing.
 class Plane {
  public:
   static constexpr std::size_t kChunk = 16;
@@ -43,11 +43,11 @@ void for_pixels(const Plane& plane, const Body& body) {
   });
 }
 
-// 2 radius + 1 weights; weight i belongs to the pixel i - radius further on.
+// 2 radius + 1 weights; weight i belongs to the pixel at distance i - radius.
 using Kernel = std::vector<float>;
 
-// Each value becomes the weighted sum along its row, or its column; beyond the border the picture
-// goes on as its last pixel.
+// Replaces each value by the weighted sum along its row, or its column. Beyond the border the last
+// pixel is repeated.
 [[nodiscard]] Plane along_rows(const Plane& plane, const Kernel& kernel);
 [[nodiscard]] Plane along_columns(const Plane& plane, const Kernel& kernel);
 

@@ -1,8 +1,9 @@
 // A reference picture prepared once, against which any number of pictures is measured.
 //
-// All metrics of 256 x 256 pixels take 16 ms on one thread, of 1920 x 1080 0.6 s, and the reference
-// as much once: FLIP 9 ms of it, SSIM 5, the others 2, relMSE alone 0.5. That is 250 ns a pixel,
-// where its 8 powers and 500 multiply-adds, 4 at once, would take about 110.
+// All metrics take 16 ms for 256 x 256 pixels on one thread, and 0.6 s for 1920 x 1080; preparing
+// the reference takes as long, once. Of the 16 ms FLIP takes 9, SSIM 5, the others 2, and relMSE
+// alone 0.5. That is 250 ns per pixel, where its 8 powers and 500 multiply-adds, 4 at once, would
+// take about 110.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +19,8 @@ namespace psf::study {
 
 class Reference {
  public:
-  // (height, width) linear colours, row 0 at the top. Measures `metrics`; SSIM and FLIP cost most.
-  // Throws Error{usage} for options that make no sense.
+  // `picture`: (height, width) linear colours, row 0 at the top. `metrics`: those to measure; SSIM
+  // and FLIP cost most. Throws Error{usage} for options that make no sense.
   Reference(std::span<const Rgb> picture, std::size_t width, const MetricOptions& options = {},
             std::span<const Metric> metrics = kAllMetrics);
   ~Reference();
@@ -31,9 +32,10 @@ class Reference {
   [[nodiscard]] const MetricOptions& options() const;
   [[nodiscard]] std::span<const Metric> metrics() const;
 
-  // Of a picture of the same size. A pixel that is not finite in either is left out and counted; in
-  // its neighbours' windows it stands as in the reference. May be called from several threads; the
-  // same bits for any number of threads.
+  // The errors of a picture of the same size as the reference. A pixel that is not finite in
+  // picture or reference is left out and counted; in the windows of its neighbours the picture has
+  // the reference's value there. May be called from several threads at once. The result is the same
+  // to the last bit for any number of threads.
   [[nodiscard]] Errors errors(std::span<const Rgb> picture) const;
   [[nodiscard]] Metrics measure(std::span<const Rgb> picture) const;
 

@@ -1,7 +1,7 @@
 #include "c_file.h"
 
+#include "core/error.h"
 #include "formats/check.h"
-#include "formats/error.h"
 #include "formats/reader.h"
 #include "golden.h"
 

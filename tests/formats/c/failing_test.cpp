@@ -19,7 +19,7 @@ namespace {
 long calls_left = -1;
 bool tear = false;  // a failing write writes half first
 int calls = 0;
-std::string order;  // of the calls: w, s, f and r
+std::string order;  // the calls in their order, as letters w, s, f and r
 
 bool fails(char call) {
   ++calls;

@@ -4,8 +4,8 @@
 #include <cstring>
 #include <vector>
 
+#include "core/error.h"
 #include "formats/codec.h"
-#include "formats/error.h"
 #include "formats/quantize.h"
 #include "targets.h"
 

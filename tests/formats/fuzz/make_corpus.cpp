@@ -146,7 +146,7 @@ void save_metadata(const std::string& folder) {
   test::save(metadata + "wrong-types.json", marked(' ', std::as_bytes(std::span(wrong))));
   test::save(metadata + "head", marked('h', formats::encode_head(small_head())));
   const Bytes file = make_file(scratch, Codec::raw, 1, true);
-  // Of a chunk of the two channels that the target expects.
+  // A file with the two channels that the target expects.
   const Bytes golden_two = [&] {
     test::write_example(scratch.path("example.pvb"));
     return test::load(scratch.path("example.pvb"));

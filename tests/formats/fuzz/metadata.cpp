@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <string>
 
+#include "core/error.h"
 #include "formats/chunk.h"
 #include "formats/commit.h"
-#include "formats/error.h"
 #include "formats/frame.h"
 #include "formats/head_frame.h"
 #include "formats/layout.h"

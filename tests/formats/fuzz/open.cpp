@@ -1,8 +1,8 @@
 // Fuzzes opening, reading and checking.
 #include <optional>
 
+#include "core/error.h"
 #include "formats/check.h"
-#include "formats/error.h"
 #include "formats/reader.h"
 #include "memory_file.h"
 #include "read_everything.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "formats/reader.h"
 
 namespace psf::fuzz {

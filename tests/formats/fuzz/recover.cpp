@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "formats/error.h"
+#include "core/error.h"
 #include "formats/reader.h"
 #include "memory_file.h"
 #include "read_everything.h"

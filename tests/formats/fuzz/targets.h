@@ -30,7 +30,7 @@ void fuzz_decode(Bytes bytes);
 void fuzz_metadata(Bytes bytes);
 
 struct Target {
-  const char* name;  // of its folder of the corpus
+  const char* name;  // name of its folder in the corpus
   void (*run)(Bytes);
 };
 inline constexpr std::array kTargets = {Target{"open", fuzz_open}, Target{"recover", fuzz_recover},

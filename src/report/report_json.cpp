@@ -1,12 +1,12 @@
-#include "study/report/report_json.h"
+#include "report/report_json.h"
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 
-namespace psf::study {
+namespace psf::report {
 
-JsonPlace JsonPlace::at(const Json& value, const std::string& name) const {
+JsonPlace JsonPlace::at(const study::Json& value, const std::string& name) const {
   JsonPlace place = *this;
   place.value_ = &value;
   place.path_ += "/" + name;
@@ -79,4 +79,4 @@ void JsonPlace::fail(const std::string& expected) const {
                                                 path_.empty() ? "/" : path_, expected, remedy_));
 }
 
-}  // namespace psf::study
+}  // namespace psf::report

@@ -1,4 +1,4 @@
-#include "formats/unfinished.h"
+#include "core/unfinished.h"
 
 #include <unistd.h>
 
@@ -9,7 +9,7 @@
 #include <new>
 #include <utility>
 
-namespace psf {
+namespace psf::core {
 namespace {
 
 // A signal handler can take no lock and free no memory. Whoever takes a name out of its place owns
@@ -54,4 +54,4 @@ void remove_unfinished() noexcept {
   for (std::size_t k = 0; k < count; ++k) static_cast<void>(::rmdir(folders[k]));
 }
 
-}  // namespace psf
+}  // namespace psf::core

@@ -1,4 +1,4 @@
-#include "study/report/report_picture.h"
+#include "report/report_picture.h"
 
 #include <ImathConfig.h>
 #include <half.h>
@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 
-namespace psf::study {
+namespace psf::report {
 namespace {
 
 std::uint16_t half_bits(float value) {
@@ -71,4 +71,4 @@ EncodedPicture encode_picture(const film::Image& image) {
   return {image.width, image.height, base64(deflated(bytes))};
 }
 
-}  // namespace psf::study
+}  // namespace psf::report

@@ -1,6 +1,6 @@
 // The report's file: pictures survive it, texts cannot break out of it, and what is no study is
 // refused.
-#include "study/report/report.h"
+#include "report/report.h"
 
 #include <half.h>
 #include <zlib.h>
@@ -9,19 +9,19 @@
 #include <cmath>
 #include <limits>
 
-#include "../tools/command.h"
-#include "../tools/report_sample.h"
 #include "catch.h"
 #include "core/error.h"
-#include "study/report/report_picture.h"
-#include "study/report/report_study.h"
+#include "report/report_picture.h"
+#include "report/report_study.h"
 #include "temp_folder.h"
+#include "tools/command.h"
+#include "tools/report_sample.h"
 
 using namespace psf::tests;
 using psf::Error;
 using psf::ErrorCode;
-using psf::study::encode_picture;
-using psf::study::write_report;
+using psf::report::encode_picture;
+using psf::report::write_report;
 
 namespace {
 
@@ -63,7 +63,7 @@ std::vector<std::uint16_t> halves_of(const std::string& base64, std::size_t widt
 struct Page {
   std::string text;
   Json data;
-  psf::study::ReportOutcome outcome;
+  psf::report::ReportOutcome outcome;
 };
 
 Page page_of(const std::vector<std::string>& folders, std::size_t max_pictures = 24) {

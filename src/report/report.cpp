@@ -1,4 +1,4 @@
-#include "study/report/report.h"
+#include "report/report.h"
 
 #include <fmt/format.h>
 
@@ -17,15 +17,15 @@
 #include "core/json_text.h"
 #include "core/output_file.h"
 #include "film/image.h"
-#include "study/report/report_assets.h"
-#include "study/report/report_picture.h"
-#include "study/report/report_study.h"
+#include "report/report_assets.h"
+#include "report/report_picture.h"
+#include "report/report_study.h"
 
-namespace psf::study {
+namespace psf::report {
 namespace {
 
 // Inside a script element only "<" can end it or open a comment.
-std::string json_for_script(const Json& json) {
+std::string json_for_script(const study::Json& json) {
   std::string text;
   for (const char c : core::json_text(json)) {
     if (c == '<') {
@@ -76,8 +76,8 @@ class PictureWriter {
   explicit PictureWriter(std::ofstream& out) : out_(out) {}
 
   // What the page must know of them.
-  Json write(const Study& study, std::size_t count) {
-    Json pictures = Json::array();
+  study::Json write(const Study& study, std::size_t count) {
+    study::Json pictures = study::Json::array();
     for (std::size_t k = 0; k < count; ++k) {
       core::throw_if_interrupted("no report was written");
       const StudyPicture& picture = study.pictures[k];
@@ -87,11 +87,11 @@ class PictureWriter {
                                        "write the study anew, or --max-pictures 0");
       }
       const EncodedPicture encoded = encode_picture(film::read_exr(picture.file));
-      Json entry = {{"id", picture.id},
-                    {"point", nullptr},
-                    {"payload", payload(encoded.base64)},
-                    {"width", encoded.width},
-                    {"height", encoded.height}};
+      study::Json entry = {{"id", picture.id},
+                           {"point", nullptr},
+                           {"payload", payload(encoded.base64)},
+                           {"width", encoded.width},
+                           {"height", encoded.height}};
       if (picture.has_point) entry["point"] = picture.point;
       pictures.push_back(std::move(entry));
     }
@@ -100,7 +100,8 @@ class PictureWriter {
 
  private:
   std::size_t payload(const std::string& base64) {
-    // Of 64 bits: two of a million different pictures share one with a probability of 3e-8.
+    // The digest has 64 bits: among a million different pictures, two have the same digest with a
+    // probability of 3e-8.
     const std::size_t digest = std::hash<std::string>()(base64);
     const auto [found, is_new] = known_.try_emplace(digest, known_.size());
     if (is_new) {
@@ -117,7 +118,7 @@ class PictureWriter {
 // The page with each @NAME@ replaced by what its part writes, in the page's order.
 void write_page(std::ofstream& out,
                 const std::map<std::string_view, std::function<void()>>& parts) {
-  std::string_view page = report_assets::page();
+  std::string_view page = assets::page();
   while (!page.empty()) {
     const std::size_t begin = page.find('@');
     out << page.substr(0, begin);
@@ -141,7 +142,7 @@ ReportOutcome write_report(std::span<const std::string> folders, const std::stri
 
   core::OutputFile file(path);
   std::ofstream out(file.temporary_path(), std::ios::binary);
-  Json data = {{"version", options.version}, {"sections", Json::array()}};
+  study::Json data = {{"version", options.version}, {"sections", study::Json::array()}};
   const auto pictures = [&] {
     PictureWriter writer(out);
     for (const Study& study : studies) {
@@ -156,12 +157,12 @@ ReportOutcome write_report(std::span<const std::string> folders, const std::stri
     }
   };
   write_page(out, {{"TITLE", [&] { out << html_escaped(title(studies, options.version)); }},
-                   {"STYLE", [&] { out << report_assets::style(); }},
+                   {"STYLE", [&] { out << assets::style(); }},
                    {"PICTURES", pictures},
                    {"DATA", [&] { out << json_for_script(data); }},
-                   {"LICENCE", [&] { out << report_assets::licence(); }},
-                   {"D3", [&] { out << report_assets::d3(); }},
-                   {"SCRIPTS", [&] { out << report_assets::scripts(); }}});
+                   {"LICENCE", [&] { out << assets::licence(); }},
+                   {"D3", [&] { out << assets::d3(); }},
+                   {"SCRIPTS", [&] { out << assets::scripts(); }}});
   outcome.bytes = static_cast<std::uint64_t>(out.tellp());
   out.close();
   if (!out) throw Error(ErrorCode::io, path + ": cannot write: " + std::strerror(errno));
@@ -169,4 +170,4 @@ ReportOutcome write_report(std::span<const std::string> folders, const std::stri
   return outcome;
 }
 
-}  // namespace psf::study
+}  // namespace psf::report

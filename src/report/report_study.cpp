@@ -1,4 +1,4 @@
-#include "study/report/report_study.h"
+#include "report/report_study.h"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,9 @@
 #include <set>
 
 #include "core/error.h"
-#include "study/report/report_json.h"
+#include "report/report_json.h"
 
-namespace psf::study {
+namespace psf::report {
 namespace fs = std::filesystem;
 namespace {
 
@@ -175,7 +175,7 @@ std::string name_of(const fs::path& path) {
 }
 
 // A report is passed on: whose machine the files lay on is nobody's business.
-void strip_folder(Json& object) {
+void strip_folder(study::Json& object) {
   if (object.is_object() && object.contains("file") && object["file"].is_string()) {
     object["file"] = name_of(object["file"].get<std::string>());
   }
@@ -191,15 +191,16 @@ Study read_study(const std::string& folder, const std::string& kind) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error(ErrorCode::io, path + ": cannot be read");
   try {
-    study.json = Json::parse(in);
-  } catch (const Json::parse_error& error) {
+    study.json = study::Json::parse(in);
+  } catch (const study::Json::parse_error& error) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("{}: is no JSON at byte {}; {}", path, error.byte, remedy));
   }
   const JsonPlace root(study.json, path, remedy);
   if (root.member("kind").text() != kind) root.member("kind").fail("\"" + kind + "\"");
-  if (root.member("format").number() != kStudyFormat) {
-    root.member("format").fail(fmt::format("{}, what this version of psf reads", kStudyFormat));
+  if (root.member("format").number() != study::kStudyFormat) {
+    root.member("format").fail(
+        fmt::format("{}, what this version of psf reads", study::kStudyFormat));
   }
   Checker checker(folder, root);
   study.pictures = kind == "sweep" ? checker.sweep() : checker.converge();
@@ -208,10 +209,10 @@ Study read_study(const std::string& folder, const std::string& kind) {
   if (kind == "sweep") {
     strip_folder(study.json["input"]);
   } else {
-    for (Json& input : study.json["inputs"]) strip_folder(input);
+    for (study::Json& input : study.json["inputs"]) strip_folder(input);
   }
   if (study.json.contains("reference")) strip_folder(study.json["reference"]);
-  const Json& input = kind == "sweep" ? study.json["input"] : study.json["inputs"][0];
+  const study::Json& input = kind == "sweep" ? study.json["input"] : study.json["inputs"][0];
   study.scene = input["scene"].get<std::string>();
   study.dump = input["file"].get<std::string>();
   return study;
@@ -249,4 +250,4 @@ std::vector<Study> read_studies(const std::string& folder) {
   return studies;
 }
 
-}  // namespace psf::study
+}  // namespace psf::report
