@@ -30,10 +30,10 @@ constexpr std::size_t kLines = 16;  // lines of a chunk, which the format fixes 
 // picture.
 class File {
  public:
-  explicit File(const std::string& path)
-      : descriptor_(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+  explicit File(const std::string& path) {
+    pending_.reserve(kGathered);  // first: what throws here must not leave an open file
+    descriptor_ = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (descriptor_ < 0) error_ = errno;
-    pending_.reserve(kGathered);
   }
   ~File() {
     if (descriptor_ >= 0) ::close(descriptor_);
@@ -88,7 +88,7 @@ class File {
     return true;
   }
 
-  int descriptor_;
+  int descriptor_ = -1;
   int error_ = 0;
   std::vector<char> pending_;
   std::uint64_t offset_ = 0;  // place in the file of the pending bytes, or of the next bytes

@@ -77,10 +77,11 @@ TEST_CASE("the raw golden files are made again byte for byte") {
 }
 
 TEST_CASE("a reader written from the spec alone gets every value") {
-  if (std::system("python3 -c '' && zstd --version >/dev/null 2>&1") != 0) {
-    SKIP("no python3 or no zstd, which the independent reader needs");
-  }
-  for (const std::string name : {"golden-raw.pvb", "golden-tail.pvb", "golden-zstd.pvb"}) {
+  if (std::system("python3 -c '' 2>/dev/null") != 0) SKIP("no python3 for the independent reader");
+  const bool has_zstd = std::system("zstd --version >/dev/null 2>&1") == 0;
+  std::vector<std::string> names = {"golden-raw.pvb", "golden-tail.pvb"};
+  if (has_zstd) names.push_back("golden-zstd.pvb");
+  for (const std::string& name : names) {
     std::istringstream lines(output_of(fmt::format("python3 '{}' '{}{}'", kScript, kData, name)));
     const Head head = test::golden_head();
     std::string channel, type, components, encoding, values;
@@ -96,6 +97,7 @@ TEST_CASE("a reader written from the spec alone gets every value") {
     }
     CHECK(k == head.channels.size());
   }
+  if (!has_zstd) SKIP("no zstd: the independent reader did not read the compressed file");
 }
 
 TEST_CASE("the example of the spec is what the writer writes") {

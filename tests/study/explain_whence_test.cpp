@@ -49,6 +49,27 @@ TEST_CASE("The pixel without a term, and with another, is the picture without it
   CHECK(proposed[2] == 0);  // it is on
 }
 
+TEST_CASE("Records are never told apart by terms that depend on where they are seen from") {
+  const TempFolder folder;
+  write_dump(folder / "a.pvb", random_records(900, 6, 0, kOne), {kOne, {300, 300, 300}, {}});
+  const study::Dump dump(folder / "a.pvb");
+  FilterRun run = default_run("1pass");
+  run.parameters.sources = 8;  // the others are orphans where no source in the ball will do
+  run.parameters.weights = filter::WeightTerms::none();
+  run.parameters.weights.hit_distance = 0.01f;
+  run.parameters.weights.direction = 0.999f;
+  run.parameters.weights.gloss = 0.01f;
+  constexpr std::uint32_t kOfViews = 1u << 3 | 1u << 5 | 1u << 7;
+  std::uint32_t refusers = 0, kinds = 0;
+  for_pixels(dump, run, [&](std::size_t, std::uint32_t, const auto& explanation) {
+    for (const auto& pair : explanation.pairs) refusers |= pair.averaged ? pair.refusers : 0;
+    for (const study::KindShare& kind : study::whence(explanation).kinds) kinds |= kind.terms;
+  });
+  CHECK((refusers & kOfViews) == kOfViews);  // orphans averaged what each of them refuses
+  CHECK((kinds & kOfViews) == 0);
+  CHECK(kinds != 0);
+}
+
 TEST_CASE("A shadow's border that leaks is told by its lights, and what refuses it is named") {
   const TempFolder folder;
   write_dump(folder / "a.pvb", half_lit_floor(), {kOne, {200, 200, 200, 200}, {}});

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "filter/inputs.h"
 #include "filter/radius.h"
+#include "search/ball.h"
 
 namespace psf::study {
 

@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "filter/average.h"
-#include "filter/orphans.h"  // and the search that adopt() wants
+#include "filter/orphans.h"
 #include "filter/roles.h"
 #include "filter/scaled.h"
 #include "filter/weights.h"
+#include "search/search.h"
 #include "study/explain/explain.h"
 
 namespace psf::study {

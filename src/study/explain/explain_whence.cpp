@@ -7,6 +7,7 @@
 
 #include "filter/values.h"
 #include "filter/weights.h"
+#include "search/ball.h"
 #include "study/explain/explain_remedies.h"
 
 namespace psf::study {
