@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kPartial = ".partial";
 
-[[noreturn]] void refuse(const std::string& path, const std::string& why) {
+[[noreturn]] void refuse_appending(const std::string& path, const std::string& why) {
   throw Error(ErrorCode::bad_input, fmt::format("{}: {}", path, why));
 }
 
@@ -45,23 +45,24 @@ void check_head(const std::string& path, const Head& head) {
 void check_same(const std::string& path, const Head& own, const Head& wanted) {
   constexpr const char* kRemedy = "it is unchanged; give another name to write a new file";
   if (own.minor > kMinor || own.optional_features != 0) {
-    refuse(path, fmt::format("written by version {}.{} of the format, which this program reads but "
-                             "cannot continue; {}",
-                             own.major, own.minor, kRemedy));
+    refuse_appending(
+        path, fmt::format("written by version {}.{} of the format, which this program reads but "
+                          "cannot continue; {}",
+                          own.major, own.minor, kRemedy));
   }
   for (std::size_t k = 0; k < std::max(own.channels.size(), wanted.channels.size()); ++k) {
     const auto name = [k](const Head& head) {
       return k < head.channels.size() ? to_text(head.channels[k]) : "nothing";
     };
     if (name(own) == name(wanted)) continue;
-    refuse(path, fmt::format("has other channels: as number {} {}, not {}; {}", k, name(own),
-                             name(wanted), kRemedy));
+    refuse_appending(path, fmt::format("has other channels: as number {} {}, not {}; {}", k,
+                                       name(own), name(wanted), kRemedy));
   }
   const std::string before = parse_metadata(own.metadata).scene_hash;
   const std::string now = parse_metadata(wanted.metadata).scene_hash;
   if (before != now) {
-    refuse(path, fmt::format("is of another scene: its scene_hash is '{}', not '{}'; {}", before,
-                             now, kRemedy));
+    refuse_appending(path, fmt::format("is of another scene: its scene_hash is '{}', not '{}'; {}",
+                                       before, now, kRemedy));
   }
 }
 
@@ -92,15 +93,16 @@ std::unique_ptr<Appender> Appender::resume(const std::string& path, const Head& 
     check_same(path, opened.head, head);
   } catch (const Error& error) {
     if (std::string_view(error.what()).starts_with(path)) throw;
-    refuse(path, error.what());
+    refuse_appending(path, error.what());
   }
   std::vector<std::byte> state;
   try {
     state = read_section(file, opened.last, opened.commit.resume);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::io) throw;
-    refuse(path, fmt::format("resume state of the commit at byte {}: {}; it cannot be continued",
-                             opened.last.prefix.offset, error.what()));
+    refuse_appending(
+        path, fmt::format("resume state of the commit at byte {}: {}; it cannot be continued",
+                          opened.last.prefix.offset, error.what()));
   }
 
   FrameWriter frames(std::move(file), opened.head_frame, opened.last.prefix);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/error.h"
@@ -31,6 +32,11 @@ class ByteWriter {
  private:
   std::vector<std::byte> bytes_;
 };
+
+// Bytes that cannot be what they are read as.
+[[noreturn]] inline void refuse(const std::string& why) {
+  throw Error(ErrorCode::bad_input, why);
+}
 
 // Decodes bytes one after the other. Throws Error{bad_input} where they end too early.
 class ByteReader {

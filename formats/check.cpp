@@ -14,7 +14,7 @@
 namespace psf::formats {
 namespace {
 
-constexpr std::size_t kBatch = 64;  // chunks between two reports of progress
+constexpr std::size_t kChunksChecked = 64;  // chunks between two reports of progress
 
 // Columns of one chunk and the padding around them.
 void check_columns(const File& file, const Walk& walk, const ChunkEntry& entry, std::uint64_t index,
@@ -89,8 +89,8 @@ CheckReport check(const std::string& path,
   report.faults.insert(report.faults.end(), walk.faults.begin(), walk.faults.end());
   summarise(walk, report);
   const std::vector<WalkedChunk> chunks = in_order(walk);
-  for (std::size_t begin = 0; begin < chunks.size(); begin += kBatch) {
-    const std::size_t end = std::min(begin + kBatch, chunks.size());
+  for (std::size_t begin = 0; begin < chunks.size(); begin += kChunksChecked) {
+    const std::size_t end = std::min(begin + kChunksChecked, chunks.size());
     std::vector<CheckReport> parts(end - begin);
     tbb::parallel_for(begin, end, [&](std::size_t k) {
       if (chunks[k].readable) check_columns(file, walk, chunks[k].entry, k, parts[k - begin]);

@@ -23,10 +23,6 @@ constexpr std::size_t kPiece = std::size_t{128} << 10;
 // Bytes that a stored byte of zstd can become: a block of 128 KiB takes 4 at least.
 constexpr std::uint64_t kMostZstd = std::uint64_t{32} << 10;
 
-[[noreturn]] void refuse(const std::string& why) {
-  throw Error(ErrorCode::bad_input, why);
-}
-
 Column decode_column(ByteReader& in) {
   Column column;
   column.channel = in.get<std::uint16_t>();

@@ -10,10 +10,6 @@
 namespace psf::formats {
 namespace {
 
-[[noreturn]] void refuse(const std::string& why) {
-  throw Error(ErrorCode::bad_input, why);
-}
-
 void put(ByteWriter& out, const Section& section) {
   out.put(section.offset);
   out.put(section.length);

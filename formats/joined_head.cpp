@@ -41,7 +41,7 @@ Json metadata_of(const Reader& reader) {
   }
 }
 
-void check_same(const Reader& reader, const Reader& first) {
+void check_joined(const Reader& reader, const Reader& first) {
   const Head &own = reader.head(), &other = first.head();
   if (own.channels != other.channels) {
     std::size_t k = 0;
@@ -146,7 +146,7 @@ JoinedHead join_heads(std::span<const JoinedInput> inputs, const ConcatenateOpti
   JoinedHead joined;
   joined.head = first.head();
   for (const JoinedInput& input : inputs.subspan(1)) {
-    check_same(input.reader, first);
+    check_joined(input.reader, first);
     joined.head.chunk_capacity =
         std::max(joined.head.chunk_capacity, input.reader.head().chunk_capacity);
   }

@@ -24,7 +24,7 @@
 namespace psf::formats {
 namespace {
 
-[[noreturn]] void refuse(const std::string& path, const std::string& why) {
+[[noreturn]] void refuse_recovery(const std::string& path, const std::string& why) {
   throw Error(ErrorCode::bad_input, fmt::format("{}: nothing can be saved: {}", path, why));
 }
 
@@ -118,7 +118,7 @@ class Recovery {
       return;
     }
     std::optional<HeadFrame> found = restore_head(file_, size);
-    if (!found) refuse(file_.path(), result.fault + ", and no commit has a copy of HEAD");
+    if (!found) refuse_recovery(file_.path(), result.fault + ", and no commit has a copy of HEAD");
     head_ = std::move(*found);
     report_.head_restored = true;
     report_.faults.push_back({0, "HEAD", {}, {}, 0, 0, result.fault});
@@ -231,10 +231,11 @@ class Recovery {
 
   void finish() {
     if (report_.chunks_saved == 0) {
-      refuse(file_.path(), options_.uncommitted || walk_.file_size == limit_
-                               ? "no chunk is whole"
-                               : "no chunk of a finished pass is whole; --uncommitted takes the "
-                                 "others, too");
+      refuse_recovery(file_.path(),
+                      options_.uncommitted || walk_.file_size == limit_
+                          ? "no chunk is whole"
+                          : "no chunk of a finished pass is whole; --uncommitted takes the "
+                            "others, too");
     }
     check_end();
     appender_->commit(resume_state());

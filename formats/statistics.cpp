@@ -9,7 +9,7 @@
 namespace psf::formats {
 namespace {
 
-constexpr std::size_t kBatch = 64;  // chunks between two reports of progress
+constexpr std::size_t kChunksRead = 64;  // chunks between two reports of progress
 
 using Components = std::vector<ComponentStatistics>;
 
@@ -80,8 +80,8 @@ std::vector<ChannelSize> channel_sizes(const Reader& reader) {
   const Head& head = reader.head();
   const std::span<const ChunkEntry> chunks = reader.chunks();
   std::vector<ChannelSize> sizes(head.channels.size());
-  for (std::size_t begin = 0; begin < chunks.size(); begin += kBatch) {
-    const std::size_t end = std::min(begin + kBatch, chunks.size());
+  for (std::size_t begin = 0; begin < chunks.size(); begin += kChunksRead) {
+    const std::size_t end = std::min(begin + kChunksRead, chunks.size());
     std::vector<std::vector<Column>> columns(end - begin);
     tbb::parallel_for(begin, end, [&](std::size_t k) { columns[k - begin] = reader.columns(k); });
     for (std::size_t k = begin; k < end; ++k) {
@@ -101,8 +101,8 @@ std::vector<ComponentStatistics> channel_statistics(
   const std::span<const ChunkEntry> chunks = reader.chunks();
   const Components empty(reader.head().channels.at(channel).decoded_components());
   Components total = empty;
-  for (std::size_t begin = 0; begin < chunks.size(); begin += kBatch) {
-    const std::size_t end = std::min(begin + kBatch, chunks.size());
+  for (std::size_t begin = 0; begin < chunks.size(); begin += kChunksRead) {
+    const std::size_t end = std::min(begin + kChunksRead, chunks.size());
     std::vector<Components> parts(end - begin, empty);
     tbb::parallel_for(begin, end, [&](std::size_t k) {
       add_chunk(reader, channel, chunks[k], parts[k - begin]);

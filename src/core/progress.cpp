@@ -19,9 +19,8 @@ void show(const std::string& text) {
 
 }  // namespace
 
-Progress::Progress(std::string what, std::size_t total, bool quiet)
+Progress::Progress(std::string what, bool quiet)
     : what_(std::move(what)),
-      total_(total),
       quiet_(quiet),
       terminal_(isatty(STDERR_FILENO) == 1),
       start_(Clock::now()),
@@ -31,16 +30,16 @@ Progress::~Progress() {
   finish();
 }
 
-void Progress::advance(std::size_t done, const std::string& note) {
-  if (quiet_ || total_ == 0) return;
+void Progress::advance(std::uint64_t done, std::uint64_t total, const std::string& note) {
+  if (quiet_ || total == 0) return;
   const auto now = Clock::now();
   const std::chrono::duration<double> since_last = now - last_;
   const double interval = terminal_ ? kTerminalInterval : kLogInterval;
-  if (since_last.count() < interval && !(done == total_ && shown_)) return;
+  if (since_last.count() < interval && !(done == total && shown_)) return;
   last_ = now;
   shown_ = true;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
-  const double fraction = static_cast<double>(done) / static_cast<double>(total_);
+  const double fraction = static_cast<double>(done) / static_cast<double>(total);
   const std::string left =
       done == 0 ? "" : format_seconds(elapsed * (1 - fraction) / fraction) + " left";
   const std::string separator = note.empty() ? "" : ", ";

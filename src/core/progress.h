@@ -2,7 +2,7 @@
 #pragma once
 
 #include <chrono>
-#include <cstddef>
+#include <cstdint>
 #include <string>
 
 namespace psf::core {
@@ -11,20 +11,19 @@ namespace psf::core {
 class Progress {
  public:
   // `what`: a word or two, "render". `quiet`: say nothing.
-  Progress(std::string what, std::size_t total, bool quiet);
+  Progress(std::string what, bool quiet);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
   // `done` of `total` steps; `note` is shown behind the bar, "3.1 M rays/s".
-  void advance(std::size_t done, const std::string& note = {});
+  void advance(std::uint64_t done, std::uint64_t total, const std::string& note = {});
   // Ends the bar's line; nothing is shown afterwards.
   void finish();
 
  private:
   using Clock = std::chrono::steady_clock;
   std::string what_;
-  std::size_t total_;
   bool quiet_, terminal_;
   bool shown_ = false;
   Clock::time_point start_, last_;

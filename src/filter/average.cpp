@@ -16,7 +16,7 @@
 namespace psf::filter {
 namespace {
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kQueriesARange = 4096;
 
 using core::Clock;
 using core::seconds_since;
@@ -25,7 +25,7 @@ using core::seconds_since;
 void finish(const Records& records, const Roles& roles, std::span<const float> radius,
             const Parameters& parameters, Average& result) {
   const std::span<const std::uint32_t> queries = roles.queries;
-  core::parallel_for(queries.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  core::parallel_for(queries.size(), kQueriesARange, [&](std::size_t begin, std::size_t end) {
     for (const std::uint32_t i : queries.subspan(begin, end - begin)) {
       result.c_bar[i] = finished(result.c_bar[i], result.neighbors[i], roles.of[i] == Role::source,
                                  radius[i], records, i, parameters);

@@ -11,7 +11,7 @@
 namespace psf::filter {
 namespace {
 
-constexpr std::size_t kGrain = 256;  // queries a range
+constexpr std::size_t kPlainGrain = 256;  // queries a range
 
 // Works on queries one after the other; one a range, so nothing is shared.
 class Worker {
@@ -78,14 +78,14 @@ class PlainEngine final : public Engine {
 
   void average(std::span<const Rgb> values, bool count_refusals, std::span<Rgb> out,
                std::span<std::uint32_t> neighbors, Statistics& statistics) override {
-    std::vector<Statistics> parts(core::range_count(order_.size(), kGrain));
-    core::parallel_for(order_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<Statistics> parts(core::range_count(order_.size(), kPlainGrain));
+    core::parallel_for(order_.size(), kPlainGrain, [&](std::size_t begin, std::size_t end) {
       core::throw_if_interrupted("no picture was written");
       Worker worker(p_, *search_, values, count_refusals);
       for (const std::uint32_t i : std::span(order_).subspan(begin, end - begin)) {
         neighbors[i] = worker.average(i, out[i]);
       }
-      parts[begin / kGrain] = worker.counts;
+      parts[begin / kPlainGrain] = worker.counts;
     });
     for (const Statistics& part : parts) statistics += part;
   }

@@ -25,7 +25,7 @@ enum Checked : std::uint32_t {
   kRoughness
 };
 
-constexpr std::size_t kGrain = 4096;
+constexpr std::size_t kRoleGrain = 4096;
 
 // One test for three: 0 times what is not finite is NaN.
 bool all_finite(const Vec3& v) {
@@ -37,9 +37,9 @@ double shaded_share(const Records& records) {
   struct Counts {
     std::uint64_t vertices = 0, shaded = 0;
   };
-  std::vector<Counts> parts(core::range_count(records.size(), kGrain));
-  core::parallel_for(records.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    Counts& part = parts[begin / kGrain];
+  std::vector<Counts> parts(core::range_count(records.size(), kRoleGrain));
+  core::parallel_for(records.size(), kRoleGrain, [&](std::size_t begin, std::size_t end) {
+    Counts& part = parts[begin / kRoleGrain];
     for (const std::uint8_t flags : records.flags.subspan(begin, end - begin)) {
       part.vertices += (flags & kHasVertex) != 0 ? 1u : 0u;
       part.shaded += (flags & kHasVertex) != 0 && (flags & kShaded) != 0 ? 1u : 0u;
@@ -56,11 +56,11 @@ double shaded_share(const Records& records) {
 
 // Whether a vertex was not shaded, nor a ray shot from it, so that its h is NaN.
 bool lacks_hits(const Records& records) {
-  std::vector<char> parts(core::range_count(records.size(), kGrain), 0);
-  core::parallel_for(records.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  std::vector<char> parts(core::range_count(records.size(), kRoleGrain), 0);
+  core::parallel_for(records.size(), kRoleGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const bool unshaded = (records.flags[i] & (kHasVertex | kShaded)) == kHasVertex;
-      if (unshaded && std::isnan(records.hit_distance[i])) parts[begin / kGrain] = 1;
+      if (unshaded && std::isnan(records.hit_distance[i])) parts[begin / kRoleGrain] = 1;
     }
   });
   return std::find(parts.begin(), parts.end(), 1) != parts.end();
@@ -184,9 +184,9 @@ Roles find_roles(const Records& records, const Block& block, const Parameters& p
   Roles roles;
   roles.of.resize(records.size());
   const Classifier classifier(records, block, parameters);
-  std::vector<Statistics> parts(core::range_count(records.size(), kGrain));
-  core::parallel_for(records.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    classifier.classify(begin, end, roles.of, parts[begin / kGrain]);
+  std::vector<Statistics> parts(core::range_count(records.size(), kRoleGrain));
+  core::parallel_for(records.size(), kRoleGrain, [&](std::size_t begin, std::size_t end) {
+    classifier.classify(begin, end, roles.of, parts[begin / kRoleGrain]);
   });
   std::vector<std::size_t> first_query, first_source;
   std::size_t queries = 0, sources = 0;
@@ -199,9 +199,9 @@ Roles find_roles(const Records& records, const Block& block, const Parameters& p
   }
   roles.queries.resize(queries);
   roles.sources.resize(sources);
-  core::parallel_for(records.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    std::uint32_t* query = roles.queries.data() + first_query[begin / kGrain];
-    std::uint32_t* source = roles.sources.data() + first_source[begin / kGrain];
+  core::parallel_for(records.size(), kRoleGrain, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t* query = roles.queries.data() + first_query[begin / kRoleGrain];
+    std::uint32_t* source = roles.sources.data() + first_source[begin / kRoleGrain];
     for (std::size_t i = begin; i < end; ++i) {
       const Role role = roles.of[i];
       if (role == Role::source) *source++ = static_cast<std::uint32_t>(i);

@@ -10,8 +10,9 @@
 namespace psf::filter {
 namespace {
 
-constexpr std::size_t kGrain = 1 << 14;
-constexpr int kLargest = 58;       // exponent: twelve squares of it, a box's diagonal, are finite
+constexpr std::size_t kScaledGrain = 1 << 14;
+constexpr int kLargestExponent =
+    58;                            // exponent: twelve squares of it, a box's diagonal, are finite
 constexpr int kLeastExtent = -20;  // exponent: there is room below it for radii without digits lost
 constexpr int kFinite = 125;       // exponent: differences of coordinates are finite
 
@@ -29,9 +30,9 @@ struct Extremes {
 };
 
 Extremes extremes_of(const Records& records, std::span<const float> radius) {
-  std::vector<Extremes> parts(core::range_count(records.size(), kGrain));
-  core::parallel_for(records.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    Extremes& part = parts[begin / kGrain];
+  std::vector<Extremes> parts(core::range_count(records.size(), kScaledGrain));
+  core::parallel_for(records.size(), kScaledGrain, [&](std::size_t begin, std::size_t end) {
+    Extremes& part = parts[begin / kScaledGrain];
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3& x = records.position[i];
       if ((records.flags[i] & kHasVertex) == 0 || !is_finite(x)) continue;
@@ -57,12 +58,12 @@ std::optional<int> exponent_for(const Extremes& e, double least_share) {
   int low = -kFinite - extent, high = kFinite - extent;
   if (e.distance > 0) high = std::min(high, kFinite - std::ilogb(e.distance));
   if (e.largest_radius > 0) {
-    low = std::max(low, -kLargest - std::ilogb(double{e.least_radius} * least_share));
-    high = std::min(high, kLargest - std::ilogb(e.largest_radius));
+    low = std::max(low, -kLargestExponent - std::ilogb(double{e.least_radius} * least_share));
+    high = std::min(high, kLargestExponent - std::ilogb(e.largest_radius));
   }
   if (low > high) return std::nullopt;
   // The places of orphans count too, and what all searches do with large coordinates.
-  const bool is_moderate = extent >= kLeastExtent && extent <= kLargest;
+  const bool is_moderate = extent >= kLeastExtent && extent <= kLargestExponent;
   if (is_moderate && low <= 0 && 0 <= high) return 0;
   return std::clamp(-extent, low, high);
 }

@@ -11,18 +11,18 @@ namespace {
 
 __extension__ using Wide = unsigned __int128;
 
-struct Base {
+struct PrimeBase {
   std::uint32_t value;
   std::uint32_t digits;      // as many as make steps below 2^-24, the precision of the result
   std::uint64_t reciprocal;  // ceil(2^64 / value): exact division of numbers below 2^54
 };
 
-constexpr std::array<Base, kHaltonDimensions> make_bases() {
-  std::array<Base, kHaltonDimensions> bases{};
+constexpr std::array<PrimeBase, kHaltonDimensions> make_bases() {
+  std::array<PrimeBase, kHaltonDimensions> bases{};
   std::size_t count = 0;
   for (std::uint32_t n = 2; count < bases.size(); ++n) {
     const bool prime = std::none_of(bases.begin(), bases.begin() + count,
-                                    [n](const Base& base) { return n % base.value == 0; });
+                                    [n](const PrimeBase& base) { return n % base.value == 0; });
     if (!prime) continue;
     std::uint32_t digits = 0;
     for (double step = 1; step > 0x1p-24; step /= n) ++digits;
@@ -32,7 +32,7 @@ constexpr std::array<Base, kHaltonDimensions> make_bases() {
 }
 constexpr auto kBases = make_bases();
 
-std::uint64_t divide(std::uint64_t n, const Base& base) {
+std::uint64_t divide(std::uint64_t n, const PrimeBase& base) {
   return static_cast<std::uint64_t>((Wide{n} * base.reciprocal) >> 64);
 }
 
@@ -43,7 +43,7 @@ std::uint32_t halton_base(std::uint32_t dimension) {
 }
 
 float halton(std::uint64_t index, std::uint32_t dimension, std::uint64_t key) {
-  const Base& base = kBases[dimension];
+  const PrimeBase& base = kBases[dimension];
   std::uint64_t value = 0;
   std::uint64_t scale = 1;
   for (std::uint32_t k = 0; k < base.digits; ++k) {

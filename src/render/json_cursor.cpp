@@ -13,19 +13,19 @@
 namespace psf::render {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 // A value as a message shows it.
-std::string quoted(const json& value) {
+std::string quoted(const Json& value) {
   constexpr std::size_t kMost = 60, kMostItems = 16;
   if (value.is_object()) return "an object";
   const bool is_short =
       !value.is_array() ||
-      (value.size() <= kMostItems && std::none_of(value.begin(), value.end(), [](const json& item) {
+      (value.size() <= kMostItems && std::none_of(value.begin(), value.end(), [](const Json& item) {
          return item.is_structured();
        }));
   if (!is_short) return "an array";
-  std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (text.size() > kMost) text = text.substr(0, kMost) + "...";
   return text;
 }
@@ -180,7 +180,7 @@ void JsonCursor::read_numbers(std::span<double> out, const Range& range) const {
     expected(fmt::format("an array of {} numbers", out.size()));
   }
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const json& item = (*value_)[i];
+    const Json& item = (*value_)[i];
     const double value = item.is_number() ? item.get<double>() : 2 * range.max;
     if (!(value >= range.min && value <= range.max)) {
       JsonCursor(item, file_, fmt::format("{}/{}", path_, i))

@@ -17,9 +17,9 @@
 namespace psf::render {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
-constexpr int kMaxDepth = 512;  // deepest nesting of values
+constexpr int kMaxValueDepth = 512;  // deepest nesting of values
 
 // "3:17", both from 1, of the byte at `offset`.
 std::string line_and_column(std::string_view text, std::size_t offset) {
@@ -42,11 +42,11 @@ std::string reason(const std::string& what) {
 
 }  // namespace
 
-json read_json(const std::string& path) {
+Json read_json(const std::string& path) {
   return parse_json(read_whole<std::string>(path), path);
 }
 
-json parse_json(std::string text, const std::string& path) {
+Json parse_json(std::string text, const std::string& path) {
   std::istringstream in(std::move(text));
   const auto fail = [&](std::size_t offset, const std::string& what) {
     throw Error(ErrorCode::bad_input,
@@ -58,13 +58,13 @@ json parse_json(std::string text, const std::string& path) {
     return static_cast<std::size_t>(std::max<std::streamoff>(now, 1) - 1);
   };
   std::vector<std::set<std::string>> keys;  // keys so far of the objects around the current place
-  const auto watch = [&](int depth, json::parse_event_t event, json& parsed) {
-    if (depth > kMaxDepth) {
-      fail(offset(), fmt::format("more than {} values within values", kMaxDepth));
+  const auto watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
+    if (depth > kMaxValueDepth) {
+      fail(offset(), fmt::format("more than {} values within values", kMaxValueDepth));
     }
-    if (event == json::parse_event_t::object_start) keys.emplace_back();
-    if (event == json::parse_event_t::object_end) keys.pop_back();
-    if (event == json::parse_event_t::key) {
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys.pop_back();
+    if (event == Json::parse_event_t::key) {
       const auto key = parsed.get<std::string>();
       if (!keys.back().insert(key).second)
         fail(offset(), fmt::format("the key \"{}\" is twice in one object", key));
@@ -72,10 +72,10 @@ json parse_json(std::string text, const std::string& path) {
     return true;
   };
   try {
-    return json::parse(in, watch);
-  } catch (const json::parse_error& error) {
+    return Json::parse(in, watch);
+  } catch (const Json::parse_error& error) {
     fail(error.byte == 0 ? 0 : error.byte - 1, "malformed JSON: " + reason(error.what()));
-  } catch (const json::exception& error) {
+  } catch (const Json::exception& error) {
     // A number out of range has no place, but its text is in the message, in quotes.
     const std::string what = reason(error.what());
     const std::size_t begin = what.find('\'') + 1, end = what.rfind('\'');
@@ -95,8 +95,8 @@ std::size_t line_of(const std::string& file, const std::string& path) {
   std::vector<Around> around;
   std::string key;
   std::streamoff end = 0;
-  const auto watch = [&](int, json::parse_event_t event, json& parsed) {
-    using Event = json::parse_event_t;
+  const auto watch = [&](int, Json::parse_event_t event, Json& parsed) {
+    using Event = Json::parse_event_t;
     if (event == Event::key) {
       key = parsed.get<std::string>();
     } else if (event == Event::object_end || event == Event::array_end) {
@@ -116,7 +116,7 @@ std::size_t line_of(const std::string& file, const std::string& path) {
     }
     return event != Event::value;  // nothing is kept
   };
-  if (json::parse(in, watch, false).is_discarded()) return 0;
+  if (Json::parse(in, watch, false).is_discarded()) return 0;
   in.clear();
   in.seekg(0);
   std::size_t lines = 1;

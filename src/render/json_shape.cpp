@@ -11,7 +11,7 @@
 namespace psf::render {
 namespace {
 
-constexpr int kMaxDepth = 32;  // deepest nesting of groups
+constexpr int kMaxGroupDepth = 32;  // deepest nesting of groups
 constexpr std::uint32_t kMaxSegments = 65536;
 
 // What is taken off the coordinates of a shape, and added by its placement: its first point, so
@@ -277,7 +277,8 @@ void read_shape(const JsonCursor& json, const std::vector<Placement>& around, Js
   const bool exact = load.scene.space.exact;
   std::vector<Placement> placements = combine(json, read_placements(json, exact), around, exact);
   if (kind == group) {
-    if (depth == kMaxDepth) json.fail(fmt::format("more than {} groups within groups", kMaxDepth));
+    if (depth == kMaxGroupDepth)
+      json.fail(fmt::format("more than {} groups within groups", kMaxGroupDepth));
     for (const JsonCursor& part : json.at("shapes").items())
       read_shape(part, placements, load, depth + 1);
     return;

@@ -10,7 +10,7 @@
 namespace psf::render {
 namespace {
 
-constexpr int kMaxDepth = 512;  // deepest nesting of nodes
+constexpr int kMaxNodeDepth = 512;  // deepest nesting of nodes
 
 Imath::M44d local_matrix(const JsonCursor& node) {
   if (const auto matrix = node.find("matrix")) {
@@ -56,8 +56,8 @@ bool is_hidden(GltfLoad& load, const JsonCursor& node) {
 
 void add_node(GltfLoad& load, const JsonCursor& index, const Imath::M44d& parent, int depth) {
   const JsonCursor node = load.element("nodes", index, "node");
-  if (depth > kMaxDepth)
-    node.fail(fmt::format("more than {} nodes within nodes, or a circle", kMaxDepth));
+  if (depth > kMaxNodeDepth)
+    node.fail(fmt::format("more than {} nodes within nodes, or a circle", kMaxNodeDepth));
   if (!load.nodes.insert(index.whole()).second)
     index.fail(fmt::format("node {} is in the scene twice; glTF has a tree of nodes, copy it",
                            index.whole()));

@@ -9,8 +9,6 @@
 namespace psf::render {
 namespace {
 
-constexpr float kRadians = std::numbers::pi_v<float> / 180;
-
 Camera read_camera(const JsonCursor& json, const Space& space) {
   json.check_keys({"name", "eye", "target", "up", "fov", "size", "lens_radius", "focus_distance"});
   Camera camera;

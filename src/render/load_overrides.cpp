@@ -13,7 +13,6 @@
 namespace psf::render {
 namespace {
 
-constexpr float kRadians = std::numbers::pi_v<float> / 180;
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 30;
 
 [[noreturn]] void misuse(const std::string& what) {

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <map>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,8 @@ namespace psf::render {
 inline void stop_where_interrupted() {
   core::throw_if_interrupted("nothing was rendered, nothing is written");
 }
+
+constexpr float kRadians = std::numbers::pi_v<float> / 180;  // of a degree
 
 // The most triangles and spheres of a scene, with the copies of "repeat".
 constexpr std::size_t kMaxPrimitives = std::size_t{1} << 27;

@@ -108,7 +108,7 @@ void Loop::resume(const formats::Head& head) {
 // Adds what is committed to the films as if it had just been traced.
 void Loop::replay() {
   const formats::Reader reader(writer_->path());
-  core::Progress progress("read back", reader.records(), settings_.quiet);
+  core::Progress progress("read back", settings_.quiet);
   Recorder& recorder = *slabs_[0];
   std::uint64_t path = 0;
   while (path < reader.records()) {
@@ -120,7 +120,7 @@ void Loop::replay() {
         recorder.load(reader, path, count);
         (void)recorder.add_to(result_.films[camera], count, settings_.shade_rate);
         path += count;
-        progress.advance(path);
+        progress.advance(path, reader.records());
       }
     }
   }
@@ -128,7 +128,7 @@ void Loop::replay() {
 }
 
 RenderResult Loop::run() {
-  core::Progress progress("render", settings_.passes * paths_a_pass_, settings_.quiet);
+  core::Progress progress("render", settings_.quiet);
   progress_ = &progress;
   while (result_.passes < settings_.passes) {
     trace_pass(result_.passes);
@@ -173,7 +173,7 @@ void Loop::trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t firs
     paths_done_ += size;
     const double rate =
         static_cast<double>(rays_) / std::max(1e-9, seconds_before_ + seconds_since(start_));
-    progress_->advance(paths_done_,
+    progress_->advance(paths_done_, settings_.passes * paths_a_pass_,
                        fmt::format("{:.2f} M rays/s{}", rate / 1e6,
                                    core::interrupted() ? ", ending after this pass" : ""));
   }

@@ -16,16 +16,17 @@ constexpr float kLargestCoordinate = std::numeric_limits<float>::max() / 4;
 
 // FLANN's pruning adds up squared distances along the path from the root: two roundings a level,
 // and at most about 800 levels, since every split halves the span of one axis or the set.
-constexpr float kEnlarge = 1.001f;
+constexpr float kEnlargeSquare = 1.001f;
 // Roundings of denormal numbers are absolute, not relative.
-constexpr float kEnlargeBy = 1e-36f;
+constexpr float kEnlargeSquareBy = 1e-36f;
 
 // The squared distance that FLANN is told to look up to. It adds two such numbers before it
 // subtracts a third, so near the largest float it would prune by an infinity that is none: there it
 // must not prune.
 float proposal(float r_sq) {
   constexpr float kLargest = std::numeric_limits<float>::max() / 8;
-  return r_sq > kLargest ? std::numeric_limits<float>::infinity() : r_sq * kEnlarge + kEnlargeBy;
+  return r_sq > kLargest ? std::numeric_limits<float>::infinity()
+                         : r_sq * kEnlargeSquare + kEnlargeSquareBy;
 }
 
 // FLANN measures with our definition, so what it hands us needs no second look at the point.

@@ -13,7 +13,7 @@
 namespace psf::study {
 namespace {
 
-constexpr std::size_t kGrain = 4096;  // pixels
+constexpr std::size_t kNoiseGrain = 4096;  // pixels
 
 // In double: luminances of any floats, and their squares.
 double luminance_of(const Rgb& c) {
@@ -51,9 +51,9 @@ std::vector<double> NoiseMoments::guess() const {
 
 NoiseShare NoiseMoments::share(double epsilon) const {
   const std::vector<double> g = guess();
-  std::vector<NoiseShare> parts(core::range_count(pixels_.size(), kGrain));
-  core::parallel_for(pixels_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    NoiseShare& part = parts[begin / kGrain];
+  std::vector<NoiseShare> parts(core::range_count(pixels_.size(), kNoiseGrain));
+  core::parallel_for(pixels_.size(), kNoiseGrain, [&](std::size_t begin, std::size_t end) {
+    NoiseShare& part = parts[begin / kNoiseGrain];
     for (std::size_t k = begin; k < end; ++k) {
       const Pixel& p = pixels_[k];
       if (p.paths < 2) continue;

@@ -9,7 +9,7 @@
 namespace psf::study {
 namespace {
 
-constexpr std::size_t kGrain = 4096;  // pixels
+constexpr std::size_t kPixelGrain = 4096;  // pixels
 
 // Products of the replicates' errors, summed over pixels: everything else follows from them.
 // E e_r e_s = bias^2 for r != s, because replicates are independent.
@@ -64,11 +64,11 @@ Products multiply(std::span<const std::vector<Rgb>> replicates, std::span<const 
     const std::size_t x = pixel % width, y = pixel / width;
     return everywhere || (x - region.x < region.width && y - region.y < region.height);
   };
-  std::vector<Products> parts(core::range_count(reference.size(), kGrain),
+  std::vector<Products> parts(core::range_count(reference.size(), kPixelGrain),
                               Products(replicates.size()));
-  core::parallel_for(reference.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  core::parallel_for(reference.size(), kPixelGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<double> errors(replicates.size());
-    Products& part = parts[begin / kGrain];
+    Products& part = parts[begin / kPixelGrain];
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
       const auto finite = [&](const std::vector<Rgb>& one) { return is_finite(one[pixel]); };
       if (!wanted(pixel) || !is_finite(reference[pixel]) ||

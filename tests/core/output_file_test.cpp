@@ -6,19 +6,13 @@
 
 #include "catch.h"
 #include "core/error.h"
+#include "read_text.h"
 #include "temp_folder.h"
 
 using psf::core::OutputFile;
 using psf::tests::TempFolder;
 
-namespace {
-
-std::string contents(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("a file that is not committed leaves what was there before, and nothing else") {
   const TempFolder folder;
@@ -28,7 +22,7 @@ TEST_CASE("a file that is not committed leaves what was there before, and nothin
     OutputFile file(path);
     std::ofstream(file.temporary_path()) << "half";
   }
-  CHECK(contents(path) == "old");
+  CHECK(psf::tests::read_text(path) == "old");
   CHECK(folder.file_count() == 1);
 }
 
@@ -37,7 +31,7 @@ TEST_CASE("a committed file replaces the old one whole") {
   const std::string path = folder / "out.txt";
   psf::core::write_text_file(path, "old");
   psf::core::write_text_file(path, "new");
-  CHECK(contents(path) == "new");
+  CHECK(psf::tests::read_text(path) == "new");
   CHECK(folder.file_count() == 1);
 }
 

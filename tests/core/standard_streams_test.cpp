@@ -20,7 +20,7 @@ using psf::tests::TempFolder;
 namespace {
 
 // Exit code of a process that does this.
-int in_a_process(const std::function<int()>& work) {
+int in_a_child(const std::function<int()>& work) {
   const pid_t child = fork();
   if (child == 0) _exit(work());
   int status = 0;
@@ -29,7 +29,7 @@ int in_a_process(const std::function<int()>& work) {
 }
 
 int flush_to(const char* path) {
-  return in_a_process([path] {
+  return in_a_child([path] {
     dup2(open(path, O_WRONLY), STDOUT_FILENO);
     std::fputs("text", stdout);
     try {
@@ -51,7 +51,7 @@ TEST_CASE("text that a full disk does not take is an I/O error") {
 
 TEST_CASE("no file gets the number of a standard stream") {
   std::fflush(stdout);
-  const int lowest = in_a_process([] {
+  const int lowest = in_a_child([] {
     closefrom(0);  // also what the test itself was given
     psf::core::open_standard_streams();
     char byte = 0;
@@ -66,7 +66,7 @@ TEST_CASE("what is said is one line, and nothing is thrown where it cannot be") 
   const TempFolder folder;
   const std::string path = folder / "err";
   const auto say_to = [](const std::string& where) {
-    return in_a_process([&] {
+    return in_a_child([&] {
       dup2(open(where.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
       psf::core::say("a\nb\x1b[2J\xe9");
       return 0;

@@ -12,6 +12,7 @@
 #include "exr_samples.h"
 #include "film/image.h"
 #include "film/picture.h"
+#include "read_text.h"
 #include "temp_folder.h"
 
 using namespace psf::tests;
@@ -25,11 +26,6 @@ std::uint64_t bytes_read() {
   std::uint64_t value = 0;
   in >> name >> value;
   return name == "rchar:" ? value : 0;
-}
-
-std::string bytes_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 void write_bytes(const std::string& path, const std::string& bytes) {
@@ -128,10 +124,10 @@ TEST_CASE("a damaged EXR is a picture or one error, and costs what its length al
        {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION,
         Imf::PIZ_COMPRESSION, Imf::PXR24_COMPRESSION}) {
     write_lines(path, sample_header(window, window, kRgb, compression), kRgb);
-    sources.push_back(bytes_of(path));
+    sources.push_back(psf::tests::read_text(path));
   }
   write_tiles(path, window);
-  sources.push_back(bytes_of(path));
+  sources.push_back(psf::tests::read_text(path));
   std::mt19937 random(12);
   std::size_t pictures = 0, refused = 0;
   for (const std::string& source : sources) {
@@ -166,7 +162,7 @@ TEST_CASE("sizes that a file cannot hold are refused before they cost anything")
     CHECK(allocated_bytes() - before < (1 << 20));
   };
   write_lines(path, sample_header(window, window, kRgb), kRgb);
-  const std::string lines = bytes_of(path);
+  const std::string lines = psf::tests::read_text(path);
   refused(with_numbers(lines, "dataWindow", 0, {0, 0, 20000, 20000}), "do not fit");
   refused(with_numbers(lines, "dataWindow", 0, {0, 0, 0, 0x7ffffffe}), "the most");
   refused(with_numbers(lines, "dataWindow", 0, {0, 0, 0, 100000000}), "do not fit");
@@ -177,7 +173,7 @@ TEST_CASE("sizes that a file cannot hold are refused before they cost anything")
       "the most");
 
   write_tiles(path, window);
-  const std::string tiles = bytes_of(path);
+  const std::string tiles = psf::tests::read_text(path);
   refused(with_numbers(with_numbers(tiles, "tiles", 0, {1, 1}), "dataWindow", 2, {999, 999}),
           "do not fit");
   refused(with_numbers(tiles, "tiles", 0, {0, 0}), "tiles are empty");

@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "film/display.h"
+#include "read_text.h"
 #include "temp_folder.h"
 
 using psf::film::Image;
@@ -30,11 +31,6 @@ Image sample() {
   image.add("neighbors.", "Y", std::vector<float>{1, 2, 3, NAN, INFINITY, -6});
   image.attributes = {{"psf:r0", "8px"}, {"psf:version", "0.1.0"}};
   return image;
-}
-
-std::string bytes_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 psf::ErrorCode code_of(const std::string& path) {
@@ -72,9 +68,9 @@ TEST_CASE("the same picture gives the same bytes") {
   for (const char* extension : {"exr", "png"}) {
     psf::film::write_image(folder / (std::string("a.") + extension), sample());
     psf::film::write_image(folder / (std::string("b.") + extension), sample());
-    const std::string a = bytes_of(folder / (std::string("a.") + extension));
+    const std::string a = psf::tests::read_text(folder / (std::string("a.") + extension));
     CHECK(!a.empty());
-    CHECK(a == bytes_of(folder / (std::string("b.") + extension)));
+    CHECK(a == psf::tests::read_text(folder / (std::string("b.") + extension)));
   }
 }
 
@@ -97,7 +93,7 @@ TEST_CASE("what is written on several threads is the same bytes, and other progr
   for (const std::size_t threads : {1u, 2u, 5u}) {
     const psf::core::ThreadLimit limit(threads);
     psf::film::write_exr(folder / "a.exr", image);
-    const std::string bytes = bytes_of(folder / "a.exr");
+    const std::string bytes = psf::tests::read_text(folder / "a.exr");
     if (first.empty()) first = bytes;
     CHECK(bytes == first);
   }

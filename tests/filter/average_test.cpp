@@ -29,7 +29,7 @@ bool near(float value, double expected) {
 }
 
 // Returns how many neighbours there were.
-std::size_t check(const Case& c, std::uint32_t seed) {
+std::size_t check_case(const Case& c, std::uint32_t seed) {
   RecordSet set = tests::random_records(c.count, seed, c.share_unshaded, c.cameras);
   Parameters parameters = c.parameters;
   parameters.count_refusals = true;
@@ -79,7 +79,7 @@ TEST_CASE("Every subset of weight terms agrees with the oracle") {
     c.parameters.weights = tests::terms_of(bits);
     c.share_unshaded = bits % 2 == 0 ? 0.5 : 0;
     INFO("terms " << bits);
-    CHECK(check(c, bits) > c.count / 3);
+    CHECK(check_case(c, bits) > c.count / 3);
   }
 }
 
@@ -94,7 +94,7 @@ TEST_CASE("Each basis of the radius agrees with the oracle, over n and delta") {
         c.parameters.radius = {
             basis == filter::RadiusBasis::footprint ? 6.0 : 0.35, basis, delta, {}};
         INFO("n " << n << ", delta " << delta << ", basis " << static_cast<int>(basis));
-        check(c, 7);
+        check_case(c, 7);
       }
     }
   }
@@ -108,7 +108,7 @@ TEST_CASE("Iterations, demodulation and both together agree with the oracle") {
       c.parameters.demodulate = demodulate;
       c.share_unshaded = 0.2;
       INFO("iterations " << iterations << ", demodulate " << demodulate);
-      check(c, 8);
+      check_case(c, 8);
     }
   }
 }
@@ -123,7 +123,7 @@ TEST_CASE("Subsampled and unshaded records agree with the oracle, orphans too") 
       c.cameras = kTwoCameras;
       c.share_unshaded = 0.3;
       INFO("sources 1/" << sources << ", r0 " << r0);
-      check(c, 9);
+      check_case(c, 9);
     }
   }
 }
@@ -134,7 +134,7 @@ TEST_CASE("Orphans far from any source that passes agree with the oracle") {
   c.parameters.radius = {0.01, filter::RadiusBasis::distance};
   c.parameters.weights = tests::terms_of(255);
   c.share_unshaded = 0.6;
-  check(c, 10);
+  check_case(c, 10);
 }
 
 TEST_CASE("The disk estimator agrees with the oracle") {
@@ -143,10 +143,10 @@ TEST_CASE("The disk estimator agrees with the oracle") {
     c.parameters.estimator = filter::Estimator::disk;
     c.parameters.radius = {r0, filter::RadiusBasis::distance};
     c.share_unshaded = 0.3;
-    check(c, 11);
+    check_case(c, 11);
     c.parameters.iterations = 2;
     c.parameters.demodulate = true;
-    check(c, 12);
+    check_case(c, 12);
   }
 }
 

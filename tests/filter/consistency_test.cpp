@@ -10,8 +10,10 @@
 namespace psf {
 namespace {
 
-constexpr std::uint32_t kSide = 64;  // pixels; one jittered path each a pass, on the unit square
-const std::vector<filter::CameraView> kCamera = {{kSide, kSide, 1.0 / kSide}};
+constexpr std::uint32_t kSquareSide =
+    64;  // pixels; one jittered path each a pass, on the unit square
+const std::vector<filter::CameraView> kSquareCamera = {
+    {kSquareSide, kSquareSide, 1.0 / kSquareSide}};
 
 // Squared bias and variance of the pixels away from the border, after 1, 2, 3 ... passes.
 struct Errors {
@@ -22,7 +24,7 @@ Errors measure(double r0, double delta, std::uint32_t passes) {
   filter::Parameters parameters;
   parameters.radius = {r0, filter::RadiusBasis::world, delta, {}};
   parameters.weights = filter::WeightTerms::none();
-  const std::size_t count = kSide * kSide;
+  const std::size_t count = kSquareSide * kSquareSide;
   std::mt19937 random(5);
   std::uniform_real_distribution<float> unit(0, 1);
   std::normal_distribution<float> noise(0, 1);
@@ -32,12 +34,12 @@ Errors measure(double r0, double delta, std::uint32_t passes) {
   Errors errors;
   for (std::uint32_t pass = 1; pass <= passes; ++pass) {
     for (std::uint32_t i = 0; i < count; ++i) {
-      const float x = (static_cast<float>(i % kSide) + unit(random)) / kSide;
-      const float y = (static_cast<float>(i / kSide) + unit(random)) / kSide;
+      const float x = (static_cast<float>(i % kSquareSide) + unit(random)) / kSquareSide;
+      const float y = (static_cast<float>(i / kSquareSide) + unit(random)) / kSquareSide;
       set.position[i] = Vec3(x, y, 0);
       set.contribution[i] = Rgb(x * x + y * y, noise(random), 0);
     }
-    const filter::Block block{0, double(pass), 1, kCamera};
+    const filter::Block block{0, double(pass), 1, kSquareCamera};
     std::vector<float> radius;
     filter::radii(parameters.radius, set.view(), block, radius);
     const filter::Average average = filter::average(set.view(), radius, block, parameters);
@@ -45,8 +47,8 @@ Errors measure(double r0, double delta, std::uint32_t passes) {
     for (std::uint32_t i = 0; i < count; ++i) {
       bias[i] += double{average.c_bar[i].x} - double{set.contribution[i].x};
       noise_sum[i] += double{average.c_bar[i].y};
-      const std::uint32_t x = i % kSide, y = i / kSide, rim = 12;
-      if (x < rim || y < rim || x >= kSide - rim || y >= kSide - rim) continue;
+      const std::uint32_t x = i % kSquareSide, y = i / kSquareSide, rim = 12;
+      if (x < rim || y < rim || x >= kSquareSide - rim || y >= kSquareSide - rim) continue;
       bias_mean += bias[i] / pass;
       square += noise_sum[i] * noise_sum[i] / pass / pass;
       ++inside;

@@ -16,17 +16,18 @@ using filter::Estimator;
 using tests::EstimatorRun;
 using tests::RecordSet;
 
-constexpr std::uint32_t kSide = 6, kPixels = kSide * kSide, kPasses = 8, kK = 4;
-const std::vector<filter::CameraView> kCamera = {{kSide, kSide, 1.0 / kSide}};
+constexpr std::uint32_t kPlaneSide = 6, kPixels = kPlaneSide * kPlaneSide, kPasses = 8, kK = 4;
+const std::vector<filter::CameraView> kPlaneCamera = {{kPlaneSide, kPlaneSide, 1.0 / kPlaneSide}};
 
 // f of the plane: a step in x, a slope in y; and its mean over a pixel.
 double field(double x, double y) {
   return (x < 0.4 ? 5 : 1) + 3 * y;
 }
 double pixel_mean(std::uint32_t pixel) {
-  const double left = double(pixel % kSide) / kSide, low = double(pixel / kSide) / kSide;
-  const double lit = std::clamp((0.4 - left) * kSide, 0.0, 1.0);
-  return 5 * lit + (1 - lit) + 3 * (low + 0.5 / kSide);
+  const double left = double(pixel % kPlaneSide) / kPlaneSide,
+               low = double(pixel / kPlaneSide) / kPlaneSide;
+  const double lit = std::clamp((0.4 - left) * kPlaneSide, 0.0, 1.0);
+  return 5 * lit + (1 - lit) + 3 * (low + 0.5 / kPlaneSide);
 }
 
 // All passes of a picture that looks down on the unit square; c is f times noise of mean 1 with a
@@ -37,8 +38,8 @@ RecordSet render(std::mt19937& random) {
   RecordSet set(kPixels * kPasses);
   for (std::uint32_t i = 0; i < set.size(); ++i) {
     const std::uint32_t pixel = i % kPixels;
-    const double x = (pixel % kSide + unit(random)) / kSide;
-    const double y = (pixel / kSide + unit(random)) / kSide;
+    const double x = (pixel % kPlaneSide + unit(random)) / kPlaneSide;
+    const double y = (pixel / kPlaneSide + unit(random)) / kPlaneSide;
     set.pixel[i] = pixel;
     set.position[i] = Vec3(float(x), float(y), 0);
     set.contribution[i] = Rgb(float(field(x, y) * noise(random)), float(x), 1);
@@ -48,7 +49,7 @@ RecordSet render(std::mt19937& random) {
 
 EstimatorRun run_of(Estimator estimator, double r0, std::uint64_t realization) {
   EstimatorRun run(estimator, r0);
-  run.cameras = kCamera;
+  run.cameras = kPlaneCamera;
   run.passes = kPasses;
   run.parameters.sources = kK;
   run.parameters.search = search::Kind::brute;  // the fastest for so few
@@ -157,7 +158,7 @@ TEST_CASE("Where contributions are known to their position, the control takes th
     for (std::uint32_t p = 0; p < kPixels; ++p) {
       double all = 0, of_control = 0, of_sources = 0;
       for (std::size_t i = p; i < set.size(); i += kPixels) {
-        const double x = double{set.position[i].x} * kSide, alpha = x - std::floor(x) < 0.5;
+        const double x = double{set.position[i].x} * kPlaneSide, alpha = x - std::floor(x) < 0.5;
         all += alpha * double{set.contribution[i].x} / kPasses;
         of_control += alpha * double{result.c_bar[i].x} / kPasses;
         if (result.roles[i] == filter::Role::source)

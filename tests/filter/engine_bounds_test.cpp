@@ -1,7 +1,6 @@
 // What bounds decide for whole nodes is what every pair below says, also where a threshold lies
 // exactly on a value that occurs.
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "catch.h"
@@ -15,7 +14,6 @@ namespace {
 using filter::engine::kWidth;
 using filter::engine::PairCounts;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr unsigned kTermBits = 8;
 
 class Random {
@@ -56,7 +54,7 @@ void vary_record(tests::RecordSet& set, std::size_t i, std::uint32_t what, Rando
   if (what == 1) set.normal[i][axis] = random.value();
   if (what == 2) set.reflectance[i][axis] = random.value();
   if (what == 3) set.visibility[i] = random.below(3) << 30;
-  if (what == 4) set.hit_distance[i] = random.one_in(4) ? kInfinity : random.value() + 0.5f;
+  if (what == 4) set.hit_distance[i] = random.one_in(4) ? tests::kInfinity : random.value() + 0.5f;
   if (what == 5) set.direction[i][axis] = random.value();
   if (what == 6) set.material[i] = random.below(3) << 30;
   if (what == 7) set.roughness[i] = random.one_in(4) ? 1 : random.value() + 0.5f;
@@ -124,8 +122,8 @@ struct Scene {
       const std::size_t query = common ? i : k, other = common ? j : pick();
       const Vec3 x = set.position[query % queries], y = set.position[other];
       r_sq[k] = search::distance_sq(y, x);
-      if (!common && random.one_in(3)) r_sq[k] = std::nextafter(r_sq[k], kInfinity);
-      if (random.one_in(20)) r_sq[k] = kInfinity;
+      if (!common && random.one_in(3)) r_sq[k] = std::nextafter(r_sq[k], tests::kInfinity);
+      if (random.one_in(20)) r_sq[k] = tests::kInfinity;
       if (k >= queries) r_sq[k] = 0;
       reach[k] = std::abs(dot(Vec3(y.x - x.x, y.y - x.y, y.z - x.z), set.normal[query % queries]));
       if (random.one_in(50)) reach[k] = -1;  // nothing passes
@@ -200,7 +198,7 @@ std::size_t differing(const Scene& scene) {
   return differing(scene, packet, counts);
 }
 
-void check(std::uint32_t scenes, std::uint32_t seed) {
+void check_bounds(std::uint32_t scenes, std::uint32_t seed) {
   const std::vector<std::string> sets = filter::engine::instruction_sets();
   for (const std::string& set : sets) {
     const filter::engine::InstructionSetLimit limit(set);
@@ -213,11 +211,11 @@ void check(std::uint32_t scenes, std::uint32_t seed) {
 }
 
 TEST_CASE("Bounds never contradict a pair") {
-  check(1500, 1);
+  check_bounds(1500, 1);
 }
 
 TEST_CASE("Bounds never contradict a pair, many packets", "[.][long]") {
-  check(20'000, 2);
+  check_bounds(20'000, 2);
 }
 
 }  // namespace

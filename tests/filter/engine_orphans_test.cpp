@@ -12,7 +12,7 @@ using search::Kind;
 using tests::EngineCase;
 
 // Contributions tell which sources were adopted. Returns how many orphans there were.
-std::uint64_t check(const EngineCase& c) {
+std::uint64_t check_orphans(const EngineCase& c) {
   const filter::Average fast = c.filtered(Kind::flann);
   CHECK(tests::difference(fast, c.filtered(Kind::plain)) == "");
   CHECK(tests::difference(fast, c.filtered(Kind::brute)) == "");
@@ -27,7 +27,7 @@ TEST_CASE("Orphans agree among random sources, few of which pass") {
         c.radius.assign(count, r);
         c.parameters.weights = tests::terms_of(terms);
         INFO(count << " records, terms " << terms << ", radius " << r);
-        check(c);
+        check_orphans(c);
       }
     }
   }
@@ -39,9 +39,9 @@ TEST_CASE("Orphans agree on ties, where the lower record goes first") {
     c.set.position = tests::lattice_points(count, 4);
     c.radius.assign(count, 0);
     c.parameters.weights = tests::terms_of(4);
-    CHECK(check(c) > count / 4);
+    CHECK(check_orphans(c) > count / 4);
     c.set.position.assign(count, Vec3(0.1f, 0.2f, 0.3f));
-    CHECK(check(c) > count / 4);
+    CHECK(check_orphans(c) > count / 4);
   }
 }
 
@@ -63,7 +63,7 @@ TEST_CASE("Orphans agree where one source passes, the last or the farthest, or n
       c.parameters.weights = tests::terms_of(64);
       c.radius.assign(count, 0.01f);
       INFO(count << " records, " << chosen << " passes");
-      CHECK(check(c) > 0);
+      CHECK(check_orphans(c) > 0);
       const filter::Statistics counts = c.filtered(Kind::flann).statistics;
       CHECK(counts.orphans_unmatched == (chosen < count ? 0 : counts.orphans));
     }
@@ -78,7 +78,7 @@ TEST_CASE("Orphans agree at any scale") {
       c.radius.assign(300, r);
       c.parameters.weights = tests::terms_of(5);
       INFO(points.name << ", radius " << r);
-      check(c);
+      check_orphans(c);
     }
   }
 }
@@ -92,7 +92,7 @@ TEST_CASE("Orphans of infinite reach agree") {
     c.set.visibility[i] = 2;
   }
   c.parameters.weights = tests::terms_of(4);
-  CHECK(check(c) == 100);
+  CHECK(check_orphans(c) == 100);
 }
 
 }  // namespace

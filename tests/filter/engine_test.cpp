@@ -1,5 +1,4 @@
 // The fast engine finds what plain FLANN and brute force find, to the last neighbour.
-#include <limits>
 
 #include "catch.h"
 #include "engine_case.h"
@@ -12,8 +11,6 @@ using search::Kind;
 using tests::difference;
 using tests::EngineCase;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr unsigned kDefaultTerms = 7 + 128, kAllTerms = 255;
 
 // Returns how many pairs passed.
@@ -93,7 +90,7 @@ TEST_CASE("The engines agree on disks, quotients and repetitions within rounding
 
 TEST_CASE("The engines agree on any radius, on one for each record too") {
   const std::vector<float> radii = {0,     1e-30f, 1e-20f, 1.0f / 64, 3.0f / 64,
-                                    0.25f, 1,      1e15f,  1e30f,     kInfinity};
+                                    0.25f, 1,      1e15f,  1e30f,     tests::kInfinity};
   for (const float plane : {0.0f, 0.4f}) {  // 0 times infinity is no number, which no pair passes
     for (const unsigned terms : {0u, 16u, kDefaultTerms, kAllTerms}) {
       EngineCase c(500, 4, 0.1);
@@ -119,7 +116,7 @@ TEST_CASE("The engines agree in planes, where the distance from them is nothing 
     for (std::size_t i = 0; i < c.set.size(); ++i) {
       c.set.position[i].y = i < 300 ? 0.25f : 0.75f;
       c.set.normal[i] = Vec3(0, 1, 0);
-      c.radius[i] = i % 5 == 0 ? kInfinity : 2.0f;
+      c.radius[i] = i % 5 == 0 ? tests::kInfinity : 2.0f;
     }
     c.parameters.weights = tests::terms_of(0);
     c.parameters.weights.plane = plane;
@@ -205,7 +202,7 @@ TEST_CASE("The engines agree on misses and hits") {
     for (const unsigned every : {1u, 2u, 40u, 1000u}) {
       EngineCase c(400, 7);
       for (std::size_t i = 0; i < c.set.size(); ++i) {
-        c.set.hit_distance[i] = i % every == 0 ? kInfinity : static_cast<float>(i % 5);
+        c.set.hit_distance[i] = i % every == 0 ? tests::kInfinity : static_cast<float>(i % 5);
       }
       c.parameters.weights = tests::terms_of(0);
       c.parameters.weights.hit_distance = share;
@@ -231,12 +228,12 @@ TEST_CASE("The engines agree on integers whose bits are no numbers") {
 
 TEST_CASE("The engines agree on what bad values leave") {
   EngineCase c(400, 9);
-  for (std::size_t i = 0; i < c.set.size(); i += 7) c.set.position[i].y = kNan;
-  for (std::size_t i = 3; i < c.set.size(); i += 11) c.set.normal[i].x = kInfinity;
-  for (std::size_t i = 5; i < c.set.size(); i += 13) c.set.contribution[i].z = kNan;
+  for (std::size_t i = 0; i < c.set.size(); i += 7) c.set.position[i].y = tests::kNan;
+  for (std::size_t i = 3; i < c.set.size(); i += 11) c.set.normal[i].x = tests::kInfinity;
+  for (std::size_t i = 5; i < c.set.size(); i += 13) c.set.contribution[i].z = tests::kNan;
   c.parameters.weights = tests::terms_of(kAllTerms);
   check(c);
-  for (Vec3& x : c.set.position) x.y = kNan;
+  for (Vec3& x : c.set.position) x.y = tests::kNan;
   CHECK(check(c) == 0);
 }
 

@@ -1,5 +1,4 @@
 // What is always true of the filter is true of every estimator.
-#include <limits>
 
 #include "catch.h"
 #include "core/error.h"
@@ -16,7 +15,6 @@ using tests::EstimatorRun;
 using tests::RecordSet;
 
 constexpr Estimator kNew[] = {Estimator::hash, Estimator::control, Estimator::adaptive};
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 const char* name_of(Estimator estimator) {
   return filter::kEstimatorNames[static_cast<std::size_t>(estimator)];
@@ -124,10 +122,10 @@ TEST_CASE("A bad value takes its record out and changes no other, whatever the e
     run.parameters.sources = 2;
     const Average expected = run(without);
     RecordSet sets[4] = {clean, clean, clean, clean};
-    sets[0].contribution[victim].y = kNan;
-    sets[1].position[victim].x = kNan;
-    sets[2].normal[victim].z = kNan;
-    sets[3].distance[victim] = std::numeric_limits<float>::infinity();
+    sets[0].contribution[victim].y = tests::kNan;
+    sets[1].position[victim].x = tests::kNan;
+    sets[2].normal[victim].z = tests::kNan;
+    sets[3].distance[victim] = tests::kInfinity;
     for (const RecordSet& set : sets) {
       const Average result = run(set);
       INFO(name_of(estimator));

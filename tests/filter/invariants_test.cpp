@@ -4,8 +4,7 @@
 #include "catch.h"
 #include "core/parallel.h"
 #include "filter/average.h"
-#include "filter/radius.h"
-#include "record_set.h"
+#include "run_average.h"
 
 namespace psf {
 namespace {
@@ -14,21 +13,12 @@ using filter::Average;
 using filter::Parameters;
 using tests::RecordSet;
 
-const std::vector<filter::CameraView> kCamera = {{30, 30, 0.05}};
-
-Average run(const RecordSet& set, const Parameters& parameters, double n = 1) {
-  const filter::Block block{0, n, 1, kCamera};
-  std::vector<float> radius;
-  filter::radii(parameters.radius, set.view(), block, radius);
-  return filter::average(set.view(), radius, block, parameters);
-}
-
 bool same_bytes(const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Rgb)) == 0;
 }
 
 TEST_CASE("r0 = 0 gives every contribution back, bit for bit") {
-  RecordSet set = tests::random_records(900, 1, 0, kCamera);
+  RecordSet set = tests::random_records(900, 1, 0, tests::kCamera);
   set.contribution[4] = Rgb(-0.0f, 1e-42f, 3e38f);
   for (const bool demodulate : {false, true}) {
     for (const auto estimator : {filter::Estimator::average, filter::Estimator::disk}) {
@@ -38,7 +28,7 @@ TEST_CASE("r0 = 0 gives every contribution back, bit for bit") {
         parameters.demodulate = demodulate;
         parameters.estimator = estimator;
         parameters.iterations = iterations;
-        const Average result = run(set, parameters);
+        const Average result = tests::run_average(set, parameters);
         std::size_t wrong = 0;
         for (std::size_t i = 0; i < set.size(); ++i) {
           if (result.roles[i] != filter::Role::source) continue;
@@ -52,7 +42,7 @@ TEST_CASE("r0 = 0 gives every contribution back, bit for bit") {
 }
 
 TEST_CASE("Constant c gives c_bar = c exactly, unshaded records and orphans too") {
-  RecordSet set = tests::random_records(900, 2, 0.5, kCamera);
+  RecordSet set = tests::random_records(900, 2, 0.5, tests::kCamera);
   const Rgb c(0.1f, 7, 1e-30f);
   for (std::size_t i = 0; i < set.size(); ++i)
     set.contribution[i] = set.flags[i] == 3 ? c : Rgb(99);
@@ -60,7 +50,7 @@ TEST_CASE("Constant c gives c_bar = c exactly, unshaded records and orphans too"
     Parameters parameters;
     parameters.radius = {r0, filter::RadiusBasis::distance};
     parameters.iterations = 2;
-    const Average result = run(set, parameters);
+    const Average result = tests::run_average(set, parameters);
     for (std::size_t i = 0; i < set.size(); ++i) {
       if (set.flags[i] != 0) REQUIRE(result.c_bar[i] == c);
     }
@@ -68,11 +58,11 @@ TEST_CASE("Constant c gives c_bar = c exactly, unshaded records and orphans too"
 }
 
 TEST_CASE("A ball that holds the block, without weights, gives the block's mean") {
-  const RecordSet set = tests::random_records(900, 3, 0.1, kCamera);
+  const RecordSet set = tests::random_records(900, 3, 0.1, tests::kCamera);
   Parameters parameters;
   parameters.radius = {10, filter::RadiusBasis::world, 0.5, {}};
   parameters.weights = filter::WeightTerms::none();
-  const Average result = run(set, parameters, 4);
+  const Average result = tests::run_average(set, parameters, 4);
   double mean[3] = {}, count = 0;
   for (std::size_t i = 0; i < set.size(); ++i) {
     if (set.flags[i] != 3) continue;
@@ -86,7 +76,7 @@ TEST_CASE("A ball that holds the block, without weights, gives the block's mean"
 }
 
 TEST_CASE("The same bytes for any number of threads") {
-  const RecordSet set = tests::random_records(5000, 4, 0.3, kCamera);
+  const RecordSet set = tests::random_records(5000, 4, 0.3, tests::kCamera);
   Parameters parameters;
   parameters.radius = {0.1, filter::RadiusBasis::distance};
   parameters.iterations = 2;
@@ -94,7 +84,7 @@ TEST_CASE("The same bytes for any number of threads") {
   parameters.count_refusals = true;
   const auto with_threads = [&](std::size_t threads) {
     const core::ThreadLimit limit(threads);
-    return run(set, parameters);
+    return tests::run_average(set, parameters);
   };
   const Average one = with_threads(1);
   for (const std::size_t threads : {2u, 4u}) {
@@ -127,26 +117,26 @@ TEST_CASE("With default weights nothing crosses a thin wall") {
   parameters.radius = {0.3, filter::RadiusBasis::distance};
   parameters.iterations = 3;
   parameters.count_refusals = true;
-  const Average result = run(set, parameters);
+  const Average result = tests::run_average(set, parameters);
   for (std::size_t i = 0; i < set.size(); ++i) REQUIRE(result.c_bar[i] == set.contribution[i]);
   CHECK(result.statistics.mean_neighbors() > 20);
   CHECK(result.statistics.candidates > result.statistics.accepted);
   parameters.weights = filter::WeightTerms::none();
-  CHECK(run(set, parameters).c_bar[400].x > 10);
+  CHECK(tests::run_average(set, parameters).c_bar[400].x > 10);
 }
 
 TEST_CASE("With default weights nothing crosses a 90 degree edge") {
   const RecordSet set = two_sheets({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, {0, 1, 0}, {0, 0, 0});
   Parameters parameters;
   parameters.radius = {0.3, filter::RadiusBasis::distance};
-  const Average result = run(set, parameters);
+  const Average result = tests::run_average(set, parameters);
   for (std::size_t i = 0; i < set.size(); ++i) REQUIRE(result.c_bar[i] == set.contribution[i]);
   parameters.weights = filter::WeightTerms::none();
-  CHECK(run(set, parameters).c_bar[400].x > 10);
+  CHECK(tests::run_average(set, parameters).c_bar[400].x > 10);
 }
 
 TEST_CASE("Demodulated, a texture stays sharp under a constant light") {
-  RecordSet set = tests::random_records(900, 5, 0, kCamera);
+  RecordSet set = tests::random_records(900, 5, 0, tests::kCamera);
   for (std::size_t i = 0; i < set.size(); ++i) {
     set.reflectance[i].y = 0.1f + 0.001f * static_cast<float>(i);
     set.contribution[i] = set.reflectance[i] * 3.0f;
@@ -155,7 +145,7 @@ TEST_CASE("Demodulated, a texture stays sharp under a constant light") {
   parameters.radius = {1, filter::RadiusBasis::distance};
   parameters.weights = filter::WeightTerms::none();
   parameters.demodulate = true;
-  const Average result = run(set, parameters);
+  const Average result = tests::run_average(set, parameters);
   // Green, whose reflectance is nowhere 0.
   for (std::size_t i = 0; i < set.size(); ++i) {
     if (set.flags[i] != 0)
@@ -164,9 +154,9 @@ TEST_CASE("Demodulated, a texture stays sharp under a constant light") {
 }
 
 TEST_CASE("No records, no result; one record keeps its own") {
-  CHECK(run(RecordSet(0), {}).c_bar.empty());
+  CHECK(tests::run_average(RecordSet(0), {}).c_bar.empty());
   const RecordSet one(1);
-  CHECK(run(one, {}).c_bar[0] == one.contribution[0]);
+  CHECK(tests::run_average(one, {}).c_bar[0] == one.contribution[0]);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ Result many(const EngineCase& c, const filter::Block& block, const std::vector<R
 }
 
 // Returns how many pairs passed in all.
-std::uint64_t check(const EngineCase& c, const std::vector<Radius>& radii, double n = 9) {
+std::uint64_t check_radii(const EngineCase& c, const std::vector<Radius>& radii, double n = 9) {
   const filter::Block block{0, n, 1.5, c.cameras};
   const Result r = many(c, block, radii);
   std::uint64_t accepted = 0;
@@ -100,7 +100,7 @@ TEST_CASE("Many radii agree with separate runs, with every subset of terms") {
     EngineCase c(700, bits, bits % 2 == 0 ? 0.4 : 0);
     c.parameters.weights = tests::terms_of(bits);
     INFO("terms " << bits);
-    CHECK(check(c, grid(RadiusBasis::distance, 0.02, 0.6, 7)) > 3000);
+    CHECK(check_radii(c, grid(RadiusBasis::distance, 0.02, 0.6, 7)) > 3000);
   }
 }
 
@@ -109,7 +109,7 @@ TEST_CASE("Many radii agree with separate runs where points lie exactly on the s
   c.parameters.weights = tests::terms_of(7);
   std::vector<Radius> radii;
   for (int k = 0; k < 24; ++k) radii.push_back({k / 64.0, RadiusBasis::world, 0});
-  CHECK(check(c, radii) > 100000);
+  CHECK(check_radii(c, radii) > 100000);
 }
 
 TEST_CASE("Many radii agree whatever the number of records and of radii") {
@@ -118,33 +118,33 @@ TEST_CASE("Many radii agree whatever the number of records and of radii") {
       EngineCase c(count, static_cast<std::uint32_t>(count), unshaded);
       c.parameters.weights = tests::terms_of(7);
       INFO(count << " records, unshaded " << unshaded);
-      check(c, {{0.2, RadiusBasis::distance, 0.4}});
-      check(c, grid(RadiusBasis::footprint, 1, 12, 4));
+      check_radii(c, {{0.2, RadiusBasis::distance, 0.4}});
+      check_radii(c, grid(RadiusBasis::footprint, 1, 12, 4));
     }
   }
   EngineCase c(600, 3, 0.1);
-  check(c, grid(RadiusBasis::distance, 0.01, 0.5, 67));
-  check(c, grid(RadiusBasis::distance, 0.01, 0.5, 90));
+  check_radii(c, grid(RadiusBasis::distance, 0.01, 0.5, 67));
+  check_radii(c, grid(RadiusBasis::distance, 0.01, 0.5, 90));
 }
 
 TEST_CASE("Many radii agree for the same scale twice, for none and for scales far apart") {
   const EngineCase c(600, 8, 0.2);
-  check(c, {{0.2, RadiusBasis::distance, 0.4},
-            {0.1, RadiusBasis::distance, 0},
-            {0.2, RadiusBasis::distance, 0.4}});
-  check(c,
-        {{0.2, RadiusBasis::distance, 0.4},
-         {0.1, RadiusBasis::distance, 0},
-         {0.2, RadiusBasis::distance, 0.1}},
-        1);
-  check(c, {{0, RadiusBasis::distance, 0.4}});
-  check(c, {{0, RadiusBasis::distance, 0.4}, {0.3, RadiusBasis::distance, 0.4}});
-  check(c, {{1e-8, RadiusBasis::world, 0},
-            {0.3, RadiusBasis::world, 0.4},
-            {1e8, RadiusBasis::world, 0.4}});
-  check(c, {{1e-30, RadiusBasis::world, 0},
-            {0.3, RadiusBasis::world, 0.4},
-            {1e30, RadiusBasis::world, 0.4}});
+  check_radii(c, {{0.2, RadiusBasis::distance, 0.4},
+                  {0.1, RadiusBasis::distance, 0},
+                  {0.2, RadiusBasis::distance, 0.4}});
+  check_radii(c,
+              {{0.2, RadiusBasis::distance, 0.4},
+               {0.1, RadiusBasis::distance, 0},
+               {0.2, RadiusBasis::distance, 0.1}},
+              1);
+  check_radii(c, {{0, RadiusBasis::distance, 0.4}});
+  check_radii(c, {{0, RadiusBasis::distance, 0.4}, {0.3, RadiusBasis::distance, 0.4}});
+  check_radii(c, {{1e-8, RadiusBasis::world, 0},
+                  {0.3, RadiusBasis::world, 0.4},
+                  {1e8, RadiusBasis::world, 0.4}});
+  check_radii(c, {{1e-30, RadiusBasis::world, 0},
+                  {0.3, RadiusBasis::world, 0.4},
+                  {1e30, RadiusBasis::world, 0.4}});
 }
 
 TEST_CASE("Many radii agree where distances, sources or values are out of the ordinary") {
@@ -169,7 +169,7 @@ TEST_CASE("Many radii agree where distances, sources or values are out of the or
   SECTION("values that only plain FLANN takes") {
     c.set.position[3].x = 1e20f;
   }
-  check(c, radii);
+  check_radii(c, radii);
 }
 
 TEST_CASE("Many radii agree to rounding where sums are rounded") {

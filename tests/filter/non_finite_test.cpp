@@ -1,22 +1,16 @@
 // Non-finite input is counted by channel, left out, and never spreads.
 #include <algorithm>
 #include <functional>
-#include <limits>
 
 #include "catch.h"
 #include "filter/average.h"
-#include "filter/radius.h"
-#include "record_set.h"
+#include "run_average.h"
 
 namespace psf {
 namespace {
 
 using filter::Parameters;
 using tests::RecordSet;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-const std::vector<filter::CameraView> kCamera = {{30, 30, 0.05}};
 
 struct Damage {
   const char* channel;
@@ -46,13 +40,6 @@ Parameters all_terms() {
   return parameters;
 }
 
-filter::Average run(const RecordSet& set, const Parameters& parameters) {
-  const filter::Block block{0, 1, 1, kCamera};
-  std::vector<float> radius;
-  filter::radii(parameters.radius, set.view(), block, radius);
-  return filter::average(set.view(), radius, block, parameters);
-}
-
 std::size_t count_of(const filter::Statistics& statistics, const std::string& channel) {
   for (std::size_t k = 0; k < filter::kCheckedChannels; ++k) {
     if (channel == filter::kCheckedNames[k]) return statistics.non_finite[k];
@@ -61,19 +48,19 @@ std::size_t count_of(const filter::Statistics& statistics, const std::string& ch
 }
 
 TEST_CASE("A bad value takes its record out and changes no other") {
-  const RecordSet clean = tests::random_records(600, 1, 0, kCamera);
+  const RecordSet clean = tests::random_records(600, 1, 0, tests::kCamera);
   std::size_t victim = 100;
   while (clean.flags[victim] != 3) ++victim;
   RecordSet without = clean;
   without.flags[victim] = 0;
-  const filter::Average expected = run(without, all_terms());
+  const filter::Average expected = tests::run_average(without, all_terms());
   for (const Damage& damage : damages()) {
-    for (const float bad : {kNan, kInfinity, -kInfinity}) {
-      if (bad == kInfinity && !damage.infinity_is_bad) continue;
+    for (const float bad : {tests::kNan, tests::kInfinity, -tests::kInfinity}) {
+      if (bad == tests::kInfinity && !damage.infinity_is_bad) continue;
       INFO(damage.channel << " = " << bad);
       RecordSet set = clean;
       damage.apply(set, victim, bad);
-      const filter::Average result = run(set, all_terms());
+      const filter::Average result = tests::run_average(set, all_terms());
       CHECK(result.roles[victim] == filter::Role::left_out);
       CHECK(result.statistics.left_out == 1);
       CHECK(count_of(result.statistics, damage.channel) == 1);
@@ -85,8 +72,8 @@ TEST_CASE("A bad value takes its record out and changes no other") {
 
 TEST_CASE("A miss is no bad value") {
   RecordSet set(10);
-  set.hit_distance.assign(10, kInfinity);
-  const filter::Average result = run(set, all_terms());
+  set.hit_distance.assign(10, tests::kInfinity);
+  const filter::Average result = tests::run_average(set, all_terms());
   CHECK(result.statistics.left_out == 0);
   CHECK(result.neighbors[0] == 10);
 }
@@ -99,10 +86,10 @@ TEST_CASE(
     const bool vertex = i % 2 == 0, shaded = i / 2 % 4 == 0;
     set.flags[i] = static_cast<std::uint8_t>((vertex ? filter::kHasVertex : 0) |
                                              (shaded ? filter::kShaded : 0));
-    if (!shaded) set.hit_distance[i] = kNan;
+    if (!shaded) set.hit_distance[i] = tests::kNan;
   }
   Parameters parameters = all_terms();
-  filter::Block block{0, 1, 1, kCamera};
+  filter::Block block{0, 1, 1, tests::kCamera};
   block.shade_rate = 4;
   const auto roles_of = [&] {
     filter::Statistics statistics;
@@ -129,27 +116,27 @@ TEST_CASE(
 
 TEST_CASE("What nothing uses may be anything") {
   RecordSet set(10);
-  set.normal[3].x = kNan;
-  set.reflectance[3].x = kNan;
-  set.hit_distance[3] = kNan;
-  set.direction[3].x = kNan;
-  set.roughness[3] = kNan;
-  set.distance[3] = kNan;
+  set.normal[3].x = tests::kNan;
+  set.reflectance[3].x = tests::kNan;
+  set.hit_distance[3] = tests::kNan;
+  set.direction[3].x = tests::kNan;
+  set.roughness[3] = tests::kNan;
+  set.distance[3] = tests::kNan;
   Parameters parameters;
   parameters.radius.basis = filter::RadiusBasis::world;
   parameters.weights = filter::WeightTerms::none();
-  CHECK(run(set, parameters).statistics.left_out == 0);
+  CHECK(tests::run_average(set, parameters).statistics.left_out == 0);
   // A path without vertex has only its own radiance.
   set.flags[3] = 0;
-  set.position[3].x = set.contribution[3].x = set.throughput[3].x = kNan;
-  CHECK(run(set, all_terms()).statistics.left_out == 0);
-  set.unfiltered[3].x = kNan;
-  CHECK(run(set, all_terms()).statistics.left_out == 1);
+  set.position[3].x = set.contribution[3].x = set.throughput[3].x = tests::kNan;
+  CHECK(tests::run_average(set, all_terms()).statistics.left_out == 0);
+  set.unfiltered[3].x = tests::kNan;
+  CHECK(tests::run_average(set, all_terms()).statistics.left_out == 1);
   // An unshaded one has no contribution.
   set.unfiltered[4].x = 0;
   set.flags[4] = filter::kHasVertex;
-  set.contribution[4].x = kNan;
-  CHECK(run(set, all_terms()).statistics.left_out == 1);
+  set.contribution[4].x = tests::kNan;
+  CHECK(tests::run_average(set, all_terms()).statistics.left_out == 1);
 }
 
 TEST_CASE("A quotient that overflows counts for the reflectance") {
@@ -158,7 +145,7 @@ TEST_CASE("A quotient that overflows counts for the reflectance") {
   set.reflectance[2].y = 1e-35f;
   Parameters parameters;
   parameters.demodulate = true;
-  const filter::Average result = run(set, parameters);
+  const filter::Average result = tests::run_average(set, parameters);
   CHECK(result.statistics.left_out == 1);
   CHECK(count_of(result.statistics, "reflectance") == 1);
   CHECK(is_finite(result.c_bar[0]));
@@ -166,9 +153,9 @@ TEST_CASE("A quotient that overflows counts for the reflectance") {
 
 TEST_CASE("A record may be bad in several channels and is left out once") {
   RecordSet set(10);
-  set.position[1].y = kInfinity;
-  set.contribution[1].y = kNan;
-  const filter::Statistics statistics = run(set, {}).statistics;
+  set.position[1].y = tests::kInfinity;
+  set.contribution[1].y = tests::kNan;
+  const filter::Statistics statistics = tests::run_average(set, {}).statistics;
   CHECK(statistics.left_out == 1);
   CHECK(count_of(statistics, "position") == 1);
   CHECK(count_of(statistics, "contribution") == 1);
@@ -177,8 +164,8 @@ TEST_CASE("A record may be bad in several channels and is left out once") {
 
 TEST_CASE("With every record bad there is nothing, and no failure") {
   RecordSet set(10);
-  for (Vec3& p : set.position) p.x = kNan;
-  const filter::Average result = run(set, {});
+  for (Vec3& p : set.position) p.x = tests::kNan;
+  const filter::Average result = tests::run_average(set, {});
   CHECK(result.statistics.left_out == 10);
   CHECK(result.statistics.queries == 0);
 }

@@ -6,10 +6,10 @@
 namespace psf {
 namespace {
 
-const std::vector<filter::CameraView> kCamera = {{64, 64, 0.05}};
+const std::vector<filter::CameraView> kOrphansCamera = {{64, 64, 0.05}};
 
-filter::Average run(const tests::RecordSet& set, float r, const filter::Parameters& parameters) {
-  return filter::average(set.view(), std::vector<float>(set.size(), r), {0, 1, 1, kCamera},
+filter::Average run_at(const tests::RecordSet& set, float r, const filter::Parameters& parameters) {
+  return filter::average(set.view(), std::vector<float>(set.size(), r), {0, 1, 1, kOrphansCamera},
                          parameters);
 }
 
@@ -26,7 +26,7 @@ tests::RecordSet line(std::size_t sources) {
 }
 
 TEST_CASE("An orphan takes its four nearest sources") {
-  const filter::Average result = run(line(9), 0.5f, {});
+  const filter::Average result = run_at(line(9), 0.5f, {});
   CHECK(result.c_bar[0] == Rgb(25));
   CHECK(result.neighbors[0] == 0);
   CHECK(result.roles[0] == filter::Role::query);
@@ -35,10 +35,10 @@ TEST_CASE("An orphan takes its four nearest sources") {
 }
 
 TEST_CASE("An orphan takes fewer where there are fewer, and only those that pass") {
-  CHECK(run(line(2), 0.5f, {}).c_bar[0] == Rgb(15));
+  CHECK(run_at(line(2), 0.5f, {}).c_bar[0] == Rgb(15));
   tests::RecordSet set = line(9);
   for (const std::size_t k : {1u, 2u, 4u, 5u, 6u, 9u}) set.normal[k] = Vec3(1, 0, 0);
-  CHECK(run(set, 0.5f, {}).c_bar[0] == Rgb(60));  // 3, 7, 8
+  CHECK(run_at(set, 0.5f, {}).c_bar[0] == Rgb(60));  // 3, 7, 8
 }
 
 TEST_CASE("An orphan's ties go to the lower record") {
@@ -48,7 +48,7 @@ TEST_CASE("An orphan's ties go to the lower record") {
     set.position[k] = Vec3(k % 2 == 0 ? 1.0f : -1.0f, 0, 0);
     set.contribution[k] = Rgb(static_cast<float>(k));
   }
-  CHECK(run(set, 0.5f, {}).c_bar[0] == Rgb(2.5f));  // 1, 2, 3, 4
+  CHECK(run_at(set, 0.5f, {}).c_bar[0] == Rgb(2.5f));  // 1, 2, 3, 4
 }
 
 TEST_CASE("The search for an orphan's source ends at the last one") {
@@ -57,11 +57,11 @@ TEST_CASE("The search for an orphan's source ends at the last one") {
     for (std::size_t k = 1; k < sources; ++k) set.material[k] = 1;
     filter::Parameters parameters;
     parameters.weights.material = true;
-    const filter::Average result = run(set, 0.5f, parameters);
+    const filter::Average result = run_at(set, 0.5f, parameters);
     CHECK(result.c_bar[0] == Rgb(10 * static_cast<float>(sources)));
     CHECK(result.statistics.orphans_unmatched == 0);
     set.material[sources] = 1;
-    const filter::Average unmatched = run(set, 0.5f, parameters);
+    const filter::Average unmatched = run_at(set, 0.5f, parameters);
     CHECK(unmatched.c_bar[0] == Rgb(10));
     CHECK(unmatched.statistics.orphans == 1);
     CHECK(unmatched.statistics.orphans_unmatched == 1);
@@ -72,7 +72,7 @@ TEST_CASE("Without any source in the block its queries are left out and counted"
   tests::RecordSet set = line(3);
   for (auto& flags : set.flags) flags = filter::kHasVertex;
   set.flags[2] = 0;
-  const filter::Average result = run(set, 9, {});
+  const filter::Average result = run_at(set, 9, {});
   CHECK(result.statistics.without_source == 3);
   CHECK(result.roles[0] == filter::Role::left_out);
   // Where no path with a vertex is shaded, none without one is part of the picture without filter.
@@ -88,7 +88,7 @@ TEST_CASE(
     parameters.sources = k;
     std::vector<std::size_t> times(set.size());
     for (std::uint64_t pass = 0; pass < k * 8; ++pass) {
-      const filter::Block block{pass * set.size(), 1, 1, kCamera};
+      const filter::Block block{pass * set.size(), 1, 1, kOrphansCamera};
       filter::Statistics statistics;
       const filter::Roles roles = filter::find_roles(set.view(), block, parameters, statistics);
       CHECK(static_cast<double>(statistics.sources) * k == Approx(64 * 64).epsilon(0.02));

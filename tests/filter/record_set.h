@@ -12,6 +12,9 @@
 
 namespace psf::tests {
 
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
 struct RecordSet {
   std::vector<std::uint8_t> flags;
   std::vector<Vec3> position;

@@ -12,7 +12,7 @@ namespace psf {
 namespace {
 
 constexpr float kMiss = std::numeric_limits<float>::infinity();
-const std::vector<filter::CameraView> kCamera = {{20, 20, 0.05}};
+const std::vector<filter::CameraView> kWeightsCamera = {{20, 20, 0.05}};
 
 TEST_CASE("Thresholds belong to the set that passes") {
   CHECK(filter::normal_term({1, 0, 0}, {0.5f, 1, 0}, 0.5f));
@@ -44,7 +44,7 @@ TEST_CASE("Hit distances compare relative to the longer, misses only to misses")
 }
 
 TEST_CASE("Refusers are empty exactly where the product passes") {
-  const tests::RecordSet set = tests::random_records(400, 1, 0, kCamera);
+  const tests::RecordSet set = tests::random_records(400, 1, 0, kWeightsCamera);
   filter::WeightTerms terms{0.9f, 0.05f, true, 0.5f, 0.4f, 0.5f, true, 6.0f};
   const filter::Weights weights(set.view(), terms);
   std::size_t passed = 0, wrong = 0;
@@ -60,8 +60,8 @@ TEST_CASE("Refusers are empty exactly where the product passes") {
 }
 
 TEST_CASE("Each term more can only shrink the set of every record") {
-  const tests::RecordSet set = tests::random_records(400, 2, 0, kCamera);
-  const filter::Block block{0, 1, 1, kCamera};
+  const tests::RecordSet set = tests::random_records(400, 2, 0, kWeightsCamera);
+  const filter::Block block{0, 1, 1, kWeightsCamera};
   filter::Parameters parameters;
   parameters.radius = {0.3, filter::RadiusBasis::distance};
   std::vector<float> radius;
@@ -104,7 +104,7 @@ TEST_CASE("A term whose channel is missing is an error that names both") {
       set.contribution, set.unfiltered,  set.pixel,    set.camera,
       set.normal,       set.reflectance, {},           set.hit_distance,
       set.direction,    set.material,    set.roughness};
-  const filter::Block block{0, 1, 1, kCamera};
+  const filter::Block block{0, 1, 1, kWeightsCamera};
   CHECK_THROWS_WITH(filter::average(records, std::vector<float>(3, 1.0f), block, parameters),
                     "the records have no channel visibility, which --visibility needs");
 }

@@ -30,10 +30,6 @@ std::vector<std::string> faults(const std::function<void(test::Bytes&)>& change,
   return lines;
 }
 
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 void flip(test::Bytes& bytes, std::size_t place) {
   bytes.at(place) ^= std::byte{0x10};
 }
@@ -67,29 +63,29 @@ TEST_CASE("a fault is named by frame, chunk, channel and records") {
 
   const auto front = faults([&](test::Bytes& bytes) { flip(bytes, chunk + 70); });
   REQUIRE(front.size() == 1);
-  CHECK(has(front[0], "CHNK 1: records 16-23: checksum"));
+  CHECK(test::has(front[0], "CHNK 1: records 16-23: checksum"));
 
   const auto padding = faults(
       [](test::Bytes& bytes) { flip(bytes, test::frames(bytes, "CHNK").at(2).offset + 4095); });
   REQUIRE(padding.size() == 1);
-  CHECK(has(padding[0], "CHNK 2: "));
-  CHECK(has(padding[0], "padding"));
+  CHECK(test::has(padding[0], "CHNK 2: "));
+  CHECK(test::has(padding[0], "padding"));
 
   const auto commit = faults(
       [](test::Bytes& bytes) { flip(bytes, test::frames(bytes, "CMIT").at(1).offset + 70); });
   REQUIRE_FALSE(commit.empty());
-  CHECK(has(commit[0] + (commit.size() > 1 ? commit[1] : ""), "CMIT"));
+  CHECK(test::has(commit[0] + (commit.size() > 1 ? commit[1] : ""), "CMIT"));
 
   const auto copy = faults([](test::Bytes& bytes) {
     const std::size_t at = test::frames(bytes, "CMIT").at(0).offset;
     flip(bytes, at + test::get(bytes, at + 160, 8) + 200);
   });
   REQUIRE(copy.size() == 1);
-  CHECK(has(copy[0], "CMIT: the checksum of its copy of HEAD is wrong"));
+  CHECK(test::has(copy[0], "CMIT: the checksum of its copy of HEAD is wrong"));
 
   const auto slot = faults([](test::Bytes& bytes) { flip(bytes, 4096 + 1024 + 5); });
   REQUIRE(slot.size() == 1);
-  CHECK(has(slot[0], "SLOT"));
+  CHECK(test::has(slot[0], "SLOT"));
 }
 
 TEST_CASE("faults behind the last commit are none; a cut file is one") {
@@ -97,7 +93,7 @@ TEST_CASE("faults behind the last commit are none; a cut file is one") {
   CHECK(faults([](test::Bytes& bytes) { bytes.resize(bytes.size() - 100); }, true).empty());
   const auto cut = faults([](test::Bytes& bytes) { bytes.resize(bytes.size() - 1); });
   REQUIRE(cut.size() == 1);
-  CHECK(has(cut[0], "the file was cut"));
+  CHECK(test::has(cut[0], "the file was cut"));
 }
 
 TEST_CASE("several faults are all named") {

@@ -65,35 +65,33 @@ struct Two {
                     out = scratch.path("out.pvb");
 };
 
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 }  // namespace
 
 TEST_CASE("another scene, picture or schema is refused by name") {
   const Two two;
   const std::string scene = two.with_metadata("scene_hash", "beef");
   CHECK(scene.find(two.b) == 0);
-  CHECK(has(scene, "its scene_hash is another: \"beef\", not \"5eed\""));
-  CHECK(has(two.with_metadata("cameras", nlohmann::json::array()), "its cameras is another"));
-  CHECK(has(two.with_metadata("integrator", "ao"), "its integrator is another"));
-  CHECK(has(two.with_metadata("block_base", 3), "its block_base is another"));
-  CHECK(has(two.with_metadata("units", "inch"), "its units is another"));
-  CHECK(has(two.with_metadata("unheard.of", 1), "its unheard.of is another"));
+  CHECK(test::has(scene, "its scene_hash is another: \"beef\", not \"5eed\""));
+  CHECK(test::has(two.with_metadata("cameras", nlohmann::json::array()), "its cameras is another"));
+  CHECK(test::has(two.with_metadata("integrator", "ao"), "its integrator is another"));
+  CHECK(test::has(two.with_metadata("block_base", 3), "its block_base is another"));
+  CHECK(test::has(two.with_metadata("units", "inch"), "its units is another"));
+  CHECK(test::has(two.with_metadata("unheard.of", 1), "its unheard.of is another"));
   const auto schema = [&](const auto& change) {
     two.rewrite(change);
     return two.refusal(ErrorCode::bad_input);
   };
-  CHECK(has(schema([](Head& h) { h.channels.pop_back(); }), "as number 9 none, not noise u64 x 1"));
-  CHECK(has(schema([](Head& h) {
-              h.channels.push_back({"more", Type::u8, 1});
-            }),
-            "as number 10 more u8 x 1, not none"));
-  CHECK(has(schema([](Head& h) { h.channels[3].type = Type::f16; }), "reflectance f16 x 3, not"));
-  CHECK(has(schema([](Head& h) { h.minor = 1; }), "another version"));
-  CHECK(has(schema([](Head& h) { h.optional_features = 1; }), "another version"));
-  CHECK(has(schema([](Head& h) { h.later_bytes.resize(3); }), "another version"));
+  CHECK(test::has(schema([](Head& h) { h.channels.pop_back(); }),
+                  "as number 9 none, not noise u64 x 1"));
+  CHECK(test::has(schema([](Head& h) {
+                    h.channels.push_back({"more", Type::u8, 1});
+                  }),
+                  "as number 10 more u8 x 1, not none"));
+  CHECK(test::has(schema([](Head& h) { h.channels[3].type = Type::f16; }),
+                  "reflectance f16 x 3, not"));
+  CHECK(test::has(schema([](Head& h) { h.minor = 1; }), "another version"));
+  CHECK(test::has(schema([](Head& h) { h.optional_features = 1; }), "another version"));
+  CHECK(test::has(schema([](Head& h) { h.later_bytes.resize(3); }), "another version"));
 }
 
 TEST_CASE("paths may be of another seed or sampler; the same ones twice are noted") {
@@ -108,11 +106,11 @@ TEST_CASE("paths may be of another seed or sampler; the same ones twice are note
   CHECK(Reader(two.out).records() == 90);
   const auto same_file = concatenate(std::vector{two.a, two.a}, two.out);
   REQUIRE(same_file.notes.size() == 1);
-  CHECK(has(same_file.notes[0], "uuid comes twice"));
+  CHECK(test::has(same_file.notes[0], "uuid comes twice"));
   two.rewrite([](Head&) {});
   const auto same_seed = concatenate(std::vector{two.a, two.b}, two.out);
   REQUIRE(same_seed.notes.size() == 1);
-  CHECK(has(same_seed.notes[0], "seed 0 comes twice"));
+  CHECK(test::has(same_seed.notes[0], "seed 0 comes twice"));
 }
 
 TEST_CASE("files of other material names are refused, names that only one tells are kept") {
@@ -133,8 +131,8 @@ TEST_CASE("files of other material names are refused, names that only one tells 
   std::filesystem::remove(two.out);
   std::filesystem::rename(two.b, two.a);
   rewrite(R"(["floor", "wall"])");
-  CHECK(has(two.refusal(ErrorCode::bad_input),
-            R"(its materials is another: ["floor","wall"], not ["wall","floor"])"));
+  CHECK(test::has(two.refusal(ErrorCode::bad_input),
+                  R"(its materials is another: ["floor","wall"], not ["wall","floor"])"));
 }
 
 TEST_CASE("channels and passes that there are not are refused by name") {
@@ -145,15 +143,18 @@ TEST_CASE("channels and passes that there are not are refused by name") {
     return two.refusal(code, options);
   };
   const ErrorCode lacking = ErrorCode::bad_input;
-  CHECK(has(with([](auto& o) { o.drop = {"motion"}; }, lacking),
-            "has no channel motion; it has number, "));
-  CHECK(has(with([](auto& o) { o.channels = {"motion"}; }, lacking), "has no channel motion"));
-  CHECK(has(with([](auto& o) { o.quantize = {"motion"}; }, lacking), "has no channel motion"));
-  CHECK(has(with([](auto& o) { o.quantize = {"pixel"}; }), "channel pixel is u32"));
-  CHECK(has(with([](auto& o) { o.drop = {"position"}; }), "channel position cannot be dropped"));
-  CHECK(has(with([](auto& o) { o.last_pass = 4; }), "passes 0:4 are no part of the 3"));
-  CHECK(has(with([](auto& o) { o.first_pass = 3; }), "passes 3:3"));
-  CHECK(has(with([](auto& o) { o.last_pass = 0; }), "passes 0:0"));
+  CHECK(test::has(with([](auto& o) { o.drop = {"motion"}; }, lacking),
+                  "has no channel motion; it has number, "));
+  CHECK(
+      test::has(with([](auto& o) { o.channels = {"motion"}; }, lacking), "has no channel motion"));
+  CHECK(
+      test::has(with([](auto& o) { o.quantize = {"motion"}; }, lacking), "has no channel motion"));
+  CHECK(test::has(with([](auto& o) { o.quantize = {"pixel"}; }), "channel pixel is u32"));
+  CHECK(test::has(with([](auto& o) { o.drop = {"position"}; }),
+                  "channel position cannot be dropped"));
+  CHECK(test::has(with([](auto& o) { o.last_pass = 4; }), "passes 0:4 are no part of the 3"));
+  CHECK(test::has(with([](auto& o) { o.first_pass = 3; }), "passes 3:3"));
+  CHECK(test::has(with([](auto& o) { o.last_pass = 0; }), "passes 0:0"));
 }
 
 TEST_CASE("a damaged column is named, and the rest can be had without it") {
@@ -168,8 +169,8 @@ TEST_CASE("a damaged column is named, and the rest can be had without it") {
     if (decode) options.codec = Codec::zstd;
     const std::string text = two.refusal(ErrorCode::bad_input, options);
     CHECK(text.find(two.a) == 0);
-    CHECK(has(text, "chunk 1 (records 16-31)"));
-    CHECK(has(text, "channel reflectance"));
+    CHECK(test::has(text, "chunk 1 (records 16-31)"));
+    CHECK(test::has(text, "channel reflectance"));
     options.drop = {"reflectance"};
     CHECK(concatenate(std::vector{two.a, two.b}, two.out, options).records == 90);
     CHECK(check(two.out).faults.empty());

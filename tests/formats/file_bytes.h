@@ -26,6 +26,11 @@ class Scratch {
   std::string folder_;
 };
 
+// Whether `part` is somewhere in `text`.
+[[nodiscard]] inline bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
 [[nodiscard]] Bytes load(const std::string& path);
 void save(const std::string& path, std::span<const std::byte> bytes);
 

@@ -29,7 +29,7 @@ std::uint64_t bits_of(std::size_t channel, std::size_t record, std::size_t compo
 }
 
 // Exact multiples of 1/4096 in [-2, 2), and now and then what is not finite.
-float float_value(std::size_t channel, std::size_t record, std::size_t component) {
+float golden_float(std::size_t channel, std::size_t record, std::size_t component) {
   const std::uint64_t bits = bits_of(channel, record, component);
   constexpr std::array<std::uint32_t, 5> kSpecial = {0x7F800000u, 0xFF800000u, 0x7FC00000u,
                                                      0x7FA12345u, 0x80000000u};
@@ -42,14 +42,14 @@ float float_value(std::size_t channel, std::size_t record, std::size_t component
 }
 
 // Axes and other unit vectors that are exact in float.
-std::array<float, 3> direction(std::size_t record) {
+std::array<float, 3> golden_direction(std::size_t record) {
   constexpr std::array<std::array<float, 3>, 6> kSome = {
       {{0, 0, 1}, {0, -1, 0}, {0.5f, 0.5f, 0.70710677f}, {-0.6f, 0, -0.8f}, {0, 0, 0}, {-1, 0, 0}}};
   return kSome[record % kSome.size()];
 }
 
 template <class T>
-void store(std::vector<std::byte>& out, T value) {
+void store_golden(std::vector<std::byte>& out, T value) {
   const auto* bytes = reinterpret_cast<const std::byte*>(&value);
   out.insert(out.end(), bytes, bytes + sizeof value);
 }
@@ -58,33 +58,33 @@ void store_record(std::vector<std::byte>& out, const Channel& channel, std::size
                   std::size_t record) {
   if (channel.encoding == Encoding::octahedral) {
     std::array<std::uint16_t, 2> code{};
-    formats::encode_octahedral(direction(record), code);
-    store(out, code);
+    formats::encode_octahedral(golden_direction(record), code);
+    store_golden(out, code);
     return;
   }
   for (std::size_t c = 0; c < channel.components; ++c) {
     const std::uint64_t bits = bits_of(k, record, c);
     switch (channel.type) {
       case Type::u8:
-        store(out, static_cast<std::uint8_t>(bits % 4));
+        store_golden(out, static_cast<std::uint8_t>(bits % 4));
         break;
       case Type::u16:
-        store(out, static_cast<std::uint16_t>(bits % 3));
+        store_golden(out, static_cast<std::uint16_t>(bits % 3));
         break;
       case Type::u32:
-        store(out, static_cast<std::uint32_t>(record % 24 * 7 + (bits >> 60)));
+        store_golden(out, static_cast<std::uint32_t>(record % 24 * 7 + (bits >> 60)));
         break;
       case Type::u64:
-        store(out, bits);
+        store_golden(out, bits);
         break;
       case Type::f16:
-        store(out, static_cast<std::uint16_t>(bits));
+        store_golden(out, static_cast<std::uint16_t>(bits));
         break;
       case Type::f32:
-        store(out, float_value(k, record, c));
+        store_golden(out, golden_float(k, record, c));
         break;
       case Type::f64:
-        store(out, static_cast<double>(float_value(k, record, c)) / 3);
+        store_golden(out, static_cast<double>(golden_float(k, record, c)) / 3);
         break;
     }
   }

@@ -15,8 +15,8 @@ using namespace psf::formats;
 
 namespace {
 
-constexpr std::uint64_t kPasses = 4;
-constexpr std::uint64_t kRecords = kPasses * test::kNumberedPass;
+constexpr std::uint64_t kDamagedPasses = 4;
+constexpr std::uint64_t kDamagedRecords = kDamagedPasses * test::kNumberedPass;
 
 // Closed; not closed; not closed and with chunks behind the last commit.
 enum class Kind { closed, open, tail };
@@ -24,10 +24,10 @@ constexpr Kind kKinds[] = {Kind::closed, Kind::open, Kind::tail};
 
 test::Bytes make(const std::string& path, Codec codec, Kind kind) {
   Writer writer(path, test::numbered_head(), {codec, false, {}});
-  test::write_numbered(writer, kPasses);
+  test::write_numbered(writer, kDamagedPasses);
   if (kind == Kind::closed) writer.close();
   if (kind == Kind::tail) {
-    test::append_numbered(writer, kRecords, 2 * test::kNumberedCapacity);
+    test::append_numbered(writer, kDamagedRecords, 2 * test::kNumberedCapacity);
   }
   return test::load(path);
 }
@@ -40,7 +40,7 @@ class Judge {
  public:
   Judge(Codec codec, Kind kind) : whole_(make(in_, codec, kind)) {
     for (const auto& chunk : test::frames(whole_, "CHNK")) {
-      if (test::get(whole_, chunk.offset + 64, 8) < kRecords) chunks_.push_back(chunk);
+      if (test::get(whole_, chunk.offset + 64, 8) < kDamagedRecords) chunks_.push_back(chunk);
     }
   }
 
@@ -70,10 +70,10 @@ class Judge {
     if (!reader.closed()) FAIL("not closed");
     if (test::wrong_columns(reader) > 0) FAIL("a wrong value");
     for (std::size_t k = 0; k < numbers.size(); ++k) {
-      if (numbers[k] >= kRecords) FAIL("a record that was never committed");
+      if (numbers[k] >= kDamagedRecords) FAIL("a record that was never committed");
       if (k > 0 && numbers[k] <= numbers[k - 1]) FAIL("a record twice or out of order");
     }
-    if (report.nothing_lost() && numbers.size() != kRecords) FAIL("lost records silently");
+    if (report.nothing_lost() && numbers.size() != kDamagedRecords) FAIL("lost records silently");
     if (numbers.size() < least) FAIL("saved " << numbers.size() << " of at least " << least);
     if (std::filesystem::exists(out_ + ".partial")) FAIL("left a temporary file");
   }
@@ -83,7 +83,7 @@ class Judge {
   [[nodiscard]] std::uint64_t untouched(const test::Bytes& bytes) const {
     const bool slot = bytes.size() >= 8192 &&
                       std::equal(bytes.begin() + 4096, bytes.begin() + 8192, whole_.begin() + 4096);
-    const std::uint64_t proven = slot ? kRecords : kRecords - test::kNumberedPass;
+    const std::uint64_t proven = slot ? kDamagedRecords : kDamagedRecords - test::kNumberedPass;
     std::uint64_t records = 0;
     for (const test::FramePlace& chunk : chunks_) {
       if (test::get(whole_, chunk.offset + 64, 8) >= proven) continue;

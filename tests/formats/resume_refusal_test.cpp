@@ -32,10 +32,6 @@ std::string refusal(const std::string& path, const Head& head, ErrorCode expecte
   return text;
 }
 
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 }  // namespace
 
 TEST_CASE("another schema or scene is refused, and the file is unchanged") {
@@ -48,19 +44,22 @@ TEST_CASE("another schema or scene is refused, and the file is unchanged") {
     change(head);
     return refusal(path, head, ErrorCode::bad_input);
   };
-  CHECK(
-      has(said([](Head& h) { h.channels.pop_back(); }), "as number 9 noise u64 x 1, not nothing"));
-  CHECK(has(said([](Head& h) { h.channels.push_back({"more", Type::u8, 1}); }), "not more u8 x 1"));
-  CHECK(has(said([](Head& h) { h.channels[1].name = "place"; }), "not place f32 x 3"));
-  CHECK(has(said([](Head& h) { h.channels[1].type = Type::f64; }), "not position f64 x 3"));
-  CHECK(has(said([](Head& h) { h.channels[1].components = 4; }), "not position f32 x 4"));
-  CHECK(has(said([](Head& h) { std::swap(h.channels[1], h.channels[2]); }), "as number 1"));
-  CHECK(has(said([](Head& h) {
-              Metadata metadata = parse_metadata(h.metadata);
-              metadata.scene_hash = "beef";
-              h.metadata = to_json(metadata);
-            }),
-            "its scene_hash is '5eed', not 'beef'"));
+  CHECK(test::has(said([](Head& h) { h.channels.pop_back(); }),
+                  "as number 9 noise u64 x 1, not nothing"));
+  CHECK(test::has(said([](Head& h) {
+                    h.channels.push_back({"more", Type::u8, 1});
+                  }),
+                  "not more u8 x 1"));
+  CHECK(test::has(said([](Head& h) { h.channels[1].name = "place"; }), "not place f32 x 3"));
+  CHECK(test::has(said([](Head& h) { h.channels[1].type = Type::f64; }), "not position f64 x 3"));
+  CHECK(test::has(said([](Head& h) { h.channels[1].components = 4; }), "not position f32 x 4"));
+  CHECK(test::has(said([](Head& h) { std::swap(h.channels[1], h.channels[2]); }), "as number 1"));
+  CHECK(test::has(said([](Head& h) {
+                    Metadata metadata = parse_metadata(h.metadata);
+                    metadata.scene_hash = "beef";
+                    h.metadata = to_json(metadata);
+                  }),
+                  "its scene_hash is '5eed', not 'beef'"));
   CHECK(said([](Head& h) { h.metadata = "no JSON"; }) != "");
   // The seed, the producer and the chunk capacity may be others: those of the file stay.
   Head other = good;
@@ -86,7 +85,7 @@ TEST_CASE("a file of a later minor version is read but not continued") {
     }
     CHECK(test::holds_passes(Reader(path), 2));
     const std::string text = refusal(path, test::numbered_head(), ErrorCode::bad_input);
-    CHECK(has(text, bits ? "version 1.0" : "version 1.1"));
+    CHECK(test::has(text, bits ? "version 1.0" : "version 1.1"));
   }
 }
 
@@ -104,9 +103,9 @@ TEST_CASE("a damaged file is not continued") {
   CHECK(damaged(5) != "");
   CHECK(damaged(100) != "");
   const std::size_t last = test::frames(whole, "CMIT").back().offset;
-  CHECK(has(damaged(last + 70), "damaged"));
+  CHECK(test::has(damaged(last + 70), "damaged"));
   // Its resume state alone: nothing could be told to the producer.
-  CHECK(has(damaged(last + test::get(whole, last + 184, 8)), "resume state"));
+  CHECK(test::has(damaged(last + test::get(whole, last + 184, 8)), "resume state"));
   test::save(path, {});
   CHECK(refusal(path, test::numbered_head(), ErrorCode::bad_input) != "");
   test::save(path, test::Bytes(5000, std::byte{'x'}));
@@ -125,11 +124,13 @@ TEST_CASE("of two writers one is refused, and the file is that of the other") {
     // Locks belong to open files, not to processes.
     const File other = File::update(path);
     CHECK(Reader(path).is_being_written());
-    CHECK(has(refusal(path, test::numbered_head(), ErrorCode::io), "another process is writing"));
+    CHECK(test::has(refusal(path, test::numbered_head(), ErrorCode::io),
+                    "another process is writing"));
   }
   CHECK_FALSE(Reader(path).is_being_written());
   Writer writer = Writer::resume(path, test::numbered_head());
-  CHECK(has(refusal(path, test::numbered_head(), ErrorCode::io), "another process is writing"));
+  CHECK(
+      test::has(refusal(path, test::numbered_head(), ErrorCode::io), "another process is writing"));
   // A new file under its name would take what it commits from now on out of sight.
   try {
     const Writer fresh(path, test::numbered_head());
@@ -192,7 +193,7 @@ TEST_CASE("refresh sees exactly what is committed") {
     FAIL("another file was taken for this one");
   } catch (const Error& error) {
     CHECK(error.code() == ErrorCode::bad_input);
-    CHECK(has(error.what(), "replaced"));
+    CHECK(test::has(error.what(), "replaced"));
   }
   CHECK(test::holds_passes(reader, 70));  // what it had it still reads
 }

@@ -15,7 +15,7 @@ using namespace psf::formats;
 
 namespace {
 
-constexpr std::uint64_t kPasses = 5;
+constexpr std::uint64_t kResumedPasses = 5;
 
 enum class Stop { closed, committed, tail, torn_chunk, torn_commit };
 constexpr Stop kStops[] = {Stop::closed, Stop::committed, Stop::tail, Stop::torn_chunk,
@@ -73,14 +73,14 @@ void check_resumed(const std::string& path, Codec codec, std::uint64_t passes) {
     REQUIRE(writer.passes() == passes);
     CHECK(writer.records() == passes * test::kNumberedPass);
     CHECK(text_of(writer.resume_state()) == test::numbered_state(passes));
-    test::write_numbered(writer, kPasses);
+    test::write_numbered(writer, kResumedPasses);
     writer.close();
   }
   const Reader reader(path);
-  CHECK(test::holds_passes(reader, kPasses));
+  CHECK(test::holds_passes(reader, kResumedPasses));
   CHECK(reader.closed());
   CHECK(reader.uncommitted_bytes() == 0);
-  CHECK(text_of(reader.resume_state()) == test::numbered_state(kPasses));
+  CHECK(text_of(reader.resume_state()) == test::numbered_state(kResumedPasses));
   const std::vector<Fault> faults = check(path).faults;
   CHECK(faults.empty());
   CHECK(same_committed(before, test::load(path), end));
@@ -91,7 +91,7 @@ void resume_cut_files(std::size_t step) {
   const std::string path = scratch.path("cut.pvb");
   std::size_t cuts = 0;
   for (const Codec codec : {Codec::raw, Codec::zstd}) {
-    test::write_numbered_file(path, codec, kPasses);
+    test::write_numbered_file(path, codec, kResumedPasses);
     const test::Bytes whole = test::load(path);
     const auto commits = test::frames(whole, "CMIT");
     for (std::size_t size = whole.size() - 1; size >= commits[0].offset + commits[0].length;
@@ -118,7 +118,7 @@ TEST_CASE("a file that was stopped in any way goes on as if it never had been") 
   const test::Scratch scratch;
   const std::string path = scratch.path("r.pvb");
   for (const Codec codec : {Codec::raw, Codec::zstd}) {
-    for (std::uint64_t passes = 1; passes < kPasses; ++passes) {
+    for (std::uint64_t passes = 1; passes < kResumedPasses; ++passes) {
       for (const Stop stop : kStops) {
         CAPTURE(passes, static_cast<int>(stop));
         write_stopped(path, codec, passes, stop);

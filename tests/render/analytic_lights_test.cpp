@@ -18,7 +18,7 @@ Scene floor_scene() {
   return scene;
 }
 
-void check_all(const Scene& scene, const Ray& r, double expected, std::uint64_t paths) {
+void check_lit(const Scene& scene, const Ray& r, double expected, std::uint64_t paths) {
   for (const char* name : {"direct", "path"}) {
     const auto integrator = make(scene, name);
     for (const SamplerKind kind : kKinds) {
@@ -37,7 +37,7 @@ TEST_CASE("A sphere light wholly above the horizon gives pi L (R / d)^2 cos") {
   for (const float x : {0.0f, 1.0f, 2.5f}) {
     CAPTURE(x);
     const double d_sq = double{x} * double{x} + 9, cosine = 3 / std::sqrt(d_sq);
-    check_all(scene, ray({x + 1, 0.3f, 4}, {x, 0, 0}), double{kRho} * 5 * 1.44 / d_sq * cosine,
+    check_lit(scene, ray({x + 1, 0.3f, 4}, {x, 0, 0}), double{kRho} * 5 * 1.44 / d_sq * cosine,
               1024);
   }
 }
@@ -46,7 +46,7 @@ TEST_CASE("A far and a tiny sphere light are as exact as a near one") {
   Scene scene = floor_scene();
   const int light = add_material(scene, MaterialKind::diffuse, 0, 1e6f);
   scene.spheres.push_back({"", Vec3(0, 50, 0), 0.05f, light});
-  check_all(scene, ray({1, 1, 1}, {0, 0, 0}), double{kRho} * 1e6 * 1e-6, 256);
+  check_lit(scene, ray({1, 1, 1}, {0, 0, 0}), double{kRho} * 1e6 * 1e-6, 256);
 }
 
 TEST_CASE("A rectangular light gives its form factor") {
@@ -56,17 +56,17 @@ TEST_CASE("A rectangular light gives its form factor") {
   scene.meshes.push_back(quad({0, 2, 0}, {3, 0, 0}, {0, 0, 1.5f}, light));
   const double a = 1.5, b = 0.75, pa = std::sqrt(1 + a * a), pb = std::sqrt(1 + b * b);
   const double form = (a / pa * std::atan(b / pa) + b / pb * std::atan(a / pb)) / (2 * kPiD);
-  check_all(scene, ray({-1, 1, -2}, {0, 0, 0}), double{kRho} * 2 * form, 1024);
+  check_lit(scene, ray({-1, 1, -2}, {0, 0, 0}), double{kRho} * 2 * form, 1024);
 }
 
 TEST_CASE("A rectangle emits from its front alone, or from both sides") {
   Scene scene = floor_scene();
   const int light = add_material(scene, MaterialKind::diffuse, 0, 2);
   scene.meshes.push_back(quad({-1, 2, -1}, {0, 0, 2}, {2, 0, 0}, light));  // faces up
-  check_all(scene, ray({-4, 1, -2}, {0, 0, 0}), 0, 64);
+  check_lit(scene, ray({-4, 1, -2}, {0, 0, 0}), 0, 64);
   scene.materials.back().emits_two_sided = true;
   const double q = std::sqrt(1.25), form = 4 * 2 * (0.5 / q * std::atan(0.5 / q)) / (2 * kPiD);
-  check_all(scene, ray({-4, 1, -2}, {0, 0, 0}), double{kRho} * 2 * form, 1024);
+  check_lit(scene, ray({-4, 1, -2}, {0, 0, 0}), double{kRho} * 2 * form, 1024);
 }
 
 TEST_CASE("A textured light is the sum of its texels") {
@@ -78,7 +78,7 @@ TEST_CASE("A textured light is the sum of its texels") {
   Mesh mesh = quad({-0.05f, 40, -0.05f}, {0.1f, 0, 0}, {0, 0, 0.1f}, light);
   mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   scene.meshes.push_back(mesh);
-  check_all(scene, ray({-1, 1, -2}, {0, 0, 0}), double{kRho} / kPiD * 1.5 * 0.01 / 1600, 1024);
+  check_lit(scene, ray({-1, 1, -2}, {0, 0, 0}), double{kRho} / kPiD * 1.5 * 0.01 / 1600, 1024);
 }
 
 TEST_CASE("Point, spot and directional lights follow their laws without noise") {
@@ -86,7 +86,7 @@ TEST_CASE("Point, spot and directional lights follow their laws without noise") 
   const Ray r = ray({4, 1, 1}, {0, 0, 0});
   SECTION("point") {
     scene.lights.push_back(point_light({1, 2, 2}, 10));
-    check_all(scene, r, double{kRho} / kPiD * 10 / 9 * 2 / 3, 8);
+    check_lit(scene, r, double{kRho} / kPiD * 10 / 9 * 2 / 3, 8);
   }
   SECTION("spot: full inside, half way, and dark outside") {
     Light spot = point_light({0, 2, 0}, 10);
@@ -99,7 +99,7 @@ TEST_CASE("Point, spot and directional lights follow their laws without noise") 
       const double sine = std::sqrt(1 - cosine * cosine);
       spot.direction = Vec3(static_cast<float>(sine), static_cast<float>(-cosine), 0);
       scene.lights = {spot};
-      check_all(scene, r, full * share, 8);
+      check_lit(scene, r, full * share, 8);
     }
   }
   SECTION("directional, without and with an angle") {
@@ -110,7 +110,7 @@ TEST_CASE("Point, spot and directional lights follow their laws without noise") 
     for (const float angle : {0.0f, 0.00465f, 0.4f}) {
       sun.angle = angle;
       scene.lights = {sun};
-      check_all(scene, r, double{kRho} / kPiD * 2 * 0.8, 1024);
+      check_lit(scene, r, double{kRho} / kPiD * 2 * 0.8, 1024);
     }
   }
   SECTION("forty lights: one is chosen, and the mean is the sum") {
@@ -121,15 +121,15 @@ TEST_CASE("Point, spot and directional lights follow their laws without noise") 
           point_light({static_cast<float>(x), 2, 0}, static_cast<float>(intensity)));
       expected += intensity / (x * x + 4) * 2 / std::sqrt(x * x + 4);
     }
-    check_all(scene, r, double{kRho} / kPiD * expected, 2048);
+    check_lit(scene, r, double{kRho} / kPiD * expected, 2048);
   }
 }
 
 TEST_CASE("A constant sky gives rho L, and L where nothing is hit") {
   Scene scene = floor_scene();
   scene.environment.radiance = grey(3);
-  check_all(scene, ray({4, 1, 1}, {0, 0, 0}), double{kRho} * 3, 16);
-  check_all(scene, ray({4, 1, 1}, {5, 2, 0}), 3, 4);
+  check_lit(scene, ray({4, 1, 1}, {0, 0, 0}), double{kRho} * 3, 16);
+  check_lit(scene, ray({4, 1, 1}, {5, 2, 0}), 3, 4);
 }
 
 namespace {
@@ -189,7 +189,7 @@ TEST_CASE("An environment map gives the integral of its lookup, also turned") {
       }
     }
     irradiance *= 2 * 4 * kPiD / (double{kSteps} * kSteps);
-    check_all(scene, ray(n * 3.0f + s, {0, 0, 0}), double{kRho} / kPiD * irradiance, 2048);
+    check_lit(scene, ray(n * 3.0f + s, {0, 0, 0}), double{kRho} / kPiD * irradiance, 2048);
     // Seen directly.
     const auto integrator = make(scene, "path");
     for (int k = 0; k < 200; ++k) {

@@ -10,9 +10,9 @@
 
 namespace psf::render {
 
-inline Scene load(const Document& d) {
+inline Scene load(const Document& d, const SceneOverrides& overrides = {}) {
   const TempFolder folder;
-  return load_scene(folder.write("s.gltf", d.gltf()));
+  return load_scene(folder.write("s.gltf", d.gltf()), overrides);
 }
 
 inline Failure failure_of(const Document& d) {

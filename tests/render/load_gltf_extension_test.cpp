@@ -3,29 +3,17 @@
 
 #include "catch.h"
 #include "gltf_document.h"
+#include "gltf_load.h"
 #include "load_support.h"
 
 namespace psf::render {
 namespace {
-
-Scene load(const Document& d, const SceneOverrides& overrides = {}) {
-  const TempFolder folder;
-  return load_scene(folder.write("s.gltf", d.gltf()), overrides);
-}
 
 Material material_of(const json& material) {
   Document d = triangle();
   d.root["materials"] = json::array({material});
   d.root["meshes"][0]["primitives"][0]["material"] = 0;
   return load(d).materials.at(0);
-}
-
-void check_point(const Vec3& got, const Vec3& expected) {
-  for (int c = 0; c < 3; ++c) CHECK(double{got[c]} == Approx(double{expected[c]}).margin(1e-5));
-}
-
-void check_color(const Rgb& got, const Rgb& expected, double margin = 1e-4) {
-  for (int c = 0; c < 3; ++c) CHECK(double{got[c]} == Approx(double{expected[c]}).margin(margin));
 }
 
 double reflectance_at_normal(double ior) {

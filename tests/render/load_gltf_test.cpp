@@ -4,25 +4,18 @@
 
 #include "catch.h"
 #include "gltf_document.h"
+#include "gltf_load.h"
 #include "load_support.h"
 
 namespace psf::render {
 namespace {
 
-Scene load(const Document& d) {
-  const TempFolder folder;
-  return load_scene(folder.write("s.gltf", d.gltf()));
-}
 std::string message_of(const Document& d, ErrorCode code = ErrorCode::bad_input) {
   const TempFolder folder;
   const Failure failure = load_failure(folder.write("s.gltf", d.gltf()));
   CHECK(failure.code == code);
   CHECK(!contains(failure.message, "\n"));
   return failure.message;
-}
-
-void check_point(const Vec3& got, const Vec3& expected) {
-  for (int c = 0; c < 3; ++c) CHECK(got[c] == Approx(expected[c]).margin(1e-5));
 }
 
 Vec3 normal_of(const Mesh& mesh) {

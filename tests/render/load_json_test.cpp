@@ -15,10 +15,6 @@ Scene load_shape(const std::string& shape) {
   return load_text(with_shapes(shape));
 }
 
-void check_point(const Vec3& got, const Vec3& expected) {
-  for (int c = 0; c < 3; ++c) CHECK(got[c] == Approx(expected[c]).margin(1e-5));
-}
-
 Vec3 normal_of(const Mesh& mesh, std::size_t t) {
   const auto& [a, b, c] = mesh.triangles[t];
   return cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a])

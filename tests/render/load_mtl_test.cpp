@@ -20,7 +20,7 @@ Scene mtl_scene(const std::string& mtl) {
   return load_scene(folder.write("s.obj", kObj));
 }
 // The material that these statements define.
-Material material_of(const std::string& statements) {
+Material mtl_material(const std::string& statements) {
   return mtl_scene("newmtl m\n" + statements).materials.at(0);
 }
 std::string failure_of(const std::string& statements) {
@@ -83,24 +83,24 @@ TEST_CASE("what MTL leaves out has the format's value, whatever stands before", 
   CHECK(m.reflectance_texture == 0);
   CHECK(m.emission == Rgb(0));
   CHECK(m.ior == 1.5f);
-  CHECK(material_of("").reflectance == Rgb(0.5f));  // as without a material
-  CHECK(material_of("Ke 1 1 1").reflectance == Rgb(0));
-  CHECK(material_of("Kd 0.25 0.5 0.75\nmap_Kd w.ppm").reflectance == Rgb(0.25f, 0.5f, 0.75f));
-  CHECK(material_of("map_Ke w.ppm").emission == Rgb(1));
-  CHECK(material_of("Ke 0 0 0\nmap_Ke w.ppm").emission == Rgb(1));
-  CHECK(material_of("Ke 2 3 4\nmap_Ke w.ppm").emission == Rgb(2, 3, 4));
+  CHECK(mtl_material("").reflectance == Rgb(0.5f));  // as without a material
+  CHECK(mtl_material("Ke 1 1 1").reflectance == Rgb(0));
+  CHECK(mtl_material("Kd 0.25 0.5 0.75\nmap_Kd w.ppm").reflectance == Rgb(0.25f, 0.5f, 0.75f));
+  CHECK(mtl_material("map_Ke w.ppm").emission == Rgb(1));
+  CHECK(mtl_material("Ke 0 0 0\nmap_Ke w.ppm").emission == Rgb(1));
+  CHECK(mtl_material("Ke 2 3 4\nmap_Ke w.ppm").emission == Rgb(2, 3, 4));
 }
 
 TEST_CASE("a colour is three numbers, or one for grey, or CIE XYZ", "[load][mtl]") {
-  CHECK(material_of("Kd 0.4").reflectance == Rgb(0.4f));
-  CHECK(material_of("Kd 0.4 # grey").reflectance == Rgb(0.4f));
-  CHECK(material_of("\tKd\t+.1 1e-1  0.1\t\r").reflectance == Rgb(0.1f));
-  CHECK(material_of("kd 0.4 0.5 0.6").reflectance == Rgb(0.4f, 0.5f, 0.6f));
-  CHECK(material_of("Kd 1.00001 0 0").reflectance == Rgb(1, 0, 0));
+  CHECK(mtl_material("Kd 0.4").reflectance == Rgb(0.4f));
+  CHECK(mtl_material("Kd 0.4 # grey").reflectance == Rgb(0.4f));
+  CHECK(mtl_material("\tKd\t+.1 1e-1  0.1\t\r").reflectance == Rgb(0.1f));
+  CHECK(mtl_material("kd 0.4 0.5 0.6").reflectance == Rgb(0.4f, 0.5f, 0.6f));
+  CHECK(mtl_material("Kd 1.00001 0 0").reflectance == Rgb(1, 0, 0));
   CHECK(left_out_of("Kd 1 1 1 1") == "a fourth number of Kd");
   // The standard's own primaries: half of white, and half of green.
-  const Rgb white = material_of("Kd xyz 0.47525 0.5 0.54445").reflectance;
-  const Rgb green = material_of("Kd xyz 0.1788 0.3576 0.0596").reflectance;
+  const Rgb white = mtl_material("Kd xyz 0.47525 0.5 0.54445").reflectance;
+  const Rgb green = mtl_material("Kd xyz 0.1788 0.3576 0.0596").reflectance;
   for (int c = 0; c < 3; ++c) {
     CHECK(white[c] == Approx(0.5).margin(1e-3));
     CHECK(green[c] == Approx(c == 1 ? 0.5 : 0).margin(1e-3));
@@ -151,8 +151,8 @@ TEST_CASE("maps are found by the rest of the line behind their options", "[load]
        {"w.ppm", "two words.ppm", "\"two words.ppm\"", "two\\ words.ppm", ".\\w.ppm", "W.PPM",
         "-s 2 2 7", "-s 1 7", "-o 0.5 w.ppm", "-bm 1 -clamp on two words.ppm", "-s.ppm"}) {
     CAPTURE(name);
-    CHECK(material_of("map_Kd " + name).reflectance_texture == 0);
-    CHECK(material_of("map_Ke " + name).emission_texture == 0);
+    CHECK(mtl_material("map_Kd " + name).reflectance_texture == 0);
+    CHECK(mtl_material("map_Ke " + name).emission_texture == 0);
   }
   const TempFolder folder;
   folder.write("s.mtl", "newmtl m\nmap_Kd no such.ppm\n");
@@ -192,50 +192,50 @@ TEST_CASE("what a library says and the picture does not show is named once", "[l
 }
 
 TEST_CASE("MTL maps to our materials as documented", "[load][mtl]") {
-  CHECK(material_of("illum 1\nKd 0.1 0.2 0.3\nKs 1 1 1").kind == MaterialKind::diffuse);
-  CHECK(material_of("Kd 0 0 0\nKe 5 6 7").emission == Rgb(5, 6, 7));
-  CHECK(material_of("Kd 1").two_sided);
-  const Material shiny = material_of("illum 2\nKd 0.5 0.4 0.3\nKs 0.2 0.1 0\nNs 30\nNi 1.4");
+  CHECK(mtl_material("illum 1\nKd 0.1 0.2 0.3\nKs 1 1 1").kind == MaterialKind::diffuse);
+  CHECK(mtl_material("Kd 0 0 0\nKe 5 6 7").emission == Rgb(5, 6, 7));
+  CHECK(mtl_material("Kd 1").two_sided);
+  const Material shiny = mtl_material("illum 2\nKd 0.5 0.4 0.3\nKs 0.2 0.1 0\nNs 30\nNi 1.4");
   CHECK(shiny.kind == MaterialKind::gloss);
   CHECK(shiny.reflectance == Rgb(0.5f, 0.4f, 0.3f));
   CHECK(shiny.specular == Rgb(0.2f, 0.1f, 0));
   // Ns 30: alpha^2 = 2 / 32, so alpha = 1/4 and the perceptual roughness 1/2.
   CHECK(shiny.roughness == Approx(0.5));
-  CHECK(material_of("Kd 0.5\nKs 0.2\nNs -2").roughness == 1);  // without illum Ks counts
-  CHECK(material_of("Kd 0.5\nKs 0\nillum 2").kind == MaterialKind::diffuse);
+  CHECK(mtl_material("Kd 0.5\nKs 0.2\nNs -2").roughness == 1);  // without illum Ks counts
+  CHECK(mtl_material("Kd 0.5\nKs 0\nillum 2").kind == MaterialKind::diffuse);
   for (const std::string model : {"3", "5", "8"}) {
-    const Material m = material_of("Kd 0.5\nKs 0.2\nNs 30\nillum " + model);
+    const Material m = mtl_material("Kd 0.5\nKs 0.2\nNs 30\nillum " + model);
     CHECK(m.kind == MaterialKind::gloss);
     CHECK(m.roughness == 0);
   }
-  CHECK(material_of("map_Kd w.ppm\nKs 0.2").reflectance_texture == 0);
-  const Material metal = material_of("illum 2\nKd 0 0 0\nKs 0.9 0.7 0.5\nNs 126");
+  CHECK(mtl_material("map_Kd w.ppm\nKs 0.2").reflectance_texture == 0);
+  const Material metal = mtl_material("illum 2\nKd 0 0 0\nKs 0.9 0.7 0.5\nNs 126");
   CHECK(metal.kind == MaterialKind::conductor);
   CHECK(metal.reflectance == Rgb(0.9f, 0.7f, 0.5f));
   CHECK(metal.roughness == Approx(0.35355).epsilon(1e-4));
-  const Material mirror = material_of("illum 3\nKd 0 0 0\nKs 0.8 0.8 0.8");
+  const Material mirror = mtl_material("illum 3\nKd 0 0 0\nKs 0.8 0.8 0.8");
   CHECK(mirror.kind == MaterialKind::mirror);
   CHECK(mirror.reflectance == Rgb(0.8f));
-  const Material pbr = material_of("Kd 0.4 0.4 0.4\nPr 0.25\nPm 0.75\nKs 1\nillum 2");
+  const Material pbr = mtl_material("Kd 0.4 0.4 0.4\nPr 0.25\nPm 0.75\nKs 1\nillum 2");
   CHECK(pbr.kind == MaterialKind::coat);
   CHECK(pbr.roughness == 0.25f);
   CHECK(pbr.metalness == 0.75f);
-  CHECK(material_of("Kd 0.4\nPm 1\nNs 30").roughness == Approx(0.5));
-  const Material glass = material_of("illum 7\nKd 1 1 1\nNi 1.33\nTf 0.25 0.49 1");
+  CHECK(mtl_material("Kd 0.4\nPm 1\nNs 30").roughness == Approx(0.5));
+  const Material glass = mtl_material("illum 7\nKd 1 1 1\nNi 1.33\nTf 0.25 0.49 1");
   CHECK(glass.kind == MaterialKind::glass);
   CHECK(glass.ior == Approx(1.33));
   CHECK(glass.reflectance.x == Approx(0.5));
   CHECK(glass.reflectance.y == Approx(0.7));
   CHECK(glass.reflectance.z == Approx(1));
-  CHECK(material_of("illum 4\nNi 1").ior == 1);
+  CHECK(mtl_material("illum 4\nNi 1").ior == 1);
   for (const std::string clear : {"d 0.1", "Tr 0.9", "illum 4", "illum 6", "illum 9"}) {
     CAPTURE(clear);
-    CHECK(material_of(clear).kind == MaterialKind::glass);
-    CHECK(material_of(clear).reflectance == Rgb(1));
+    CHECK(mtl_material(clear).kind == MaterialKind::glass);
+    CHECK(mtl_material(clear).reflectance == Rgb(1));
   }
   for (const std::string solid : {"d 1\nTr 1", "Tr 1\nd 1", "Tr 0", "d 0.5"}) {
     CAPTURE(solid);
-    CHECK(material_of(solid).kind == MaterialKind::diffuse);
+    CHECK(mtl_material(solid).kind == MaterialKind::diffuse);
   }
 }
 

@@ -15,7 +15,7 @@ const std::string kTwoCameras = R"({
   "materials": [{"name": "m", "emission": 1}],
   "shapes": [{"shape": "box", "material": "m", "min": [-1, -1, -1], "max": [1, 1, 1]}]})";
 
-Scene load(const SceneOverrides& overrides, const std::string& text = kTwoCameras) {
+Scene load_with(const SceneOverrides& overrides, const std::string& text = kTwoCameras) {
   const TempFolder folder;
   return load_scene(folder.write("s.json", text), overrides);
 }
@@ -28,7 +28,7 @@ TEST_CASE("size and field of view change every camera, a pose leaves one", "[loa
   SceneOverrides o;
   o.size = Vec2(40, 30);
   o.fov = 90.0f;
-  Scene scene = load(o);
+  Scene scene = load_with(o);
   REQUIRE(scene.cameras.size() == 2);
   for (const Camera& camera : scene.cameras) {
     CHECK((camera.width == 40 && camera.height == 30));
@@ -36,7 +36,7 @@ TEST_CASE("size and field of view change every camera, a pose leaves one", "[loa
   }
   o.eye = Imath::V3d(0, 3, 9);
   o.up = Vec3(0, 0, -2);
-  scene = load(o);
+  scene = load_with(o);
   REQUIRE(scene.cameras.size() == 1);
   CHECK(scene.cameras[0].name == "a");
   CHECK(scene.cameras[0].eye == Vec3(0, 3, 9));
@@ -50,7 +50,7 @@ TEST_CASE("sky and sun replace and add light", "[load][overrides]") {
   o.sky = Rgb(1, 2, 3);
   o.sun_direction = Vec3(0, 2, 0);
   o.sun = Rgb(4);
-  Scene scene = load(o);
+  Scene scene = load_with(o);
   CHECK(scene.environment.radiance == Rgb(1, 2, 3));
   CHECK(scene.environment.texture == kNone);
   REQUIRE(scene.lights.size() == 1);
@@ -60,7 +60,7 @@ TEST_CASE("sky and sun replace and add light", "[load][overrides]") {
   CHECK(scene.lights[0].angle == o.sun_angle);
   o.sky.reset();
   o.sky_map = folder.write("sky.ppm", ppm(2, "255 255 255 0 0 0"));
-  scene = load(o);
+  scene = load_with(o);
   REQUIRE(scene.environment.texture != kNone);
   CHECK(scene.environment.radiance == Rgb(1));
   CHECK(scene.textures.at(static_cast<std::size_t>(scene.environment.texture)).width() == 2);
@@ -104,7 +104,7 @@ TEST_CASE("cameras that see nothing are refused", "[load][overrides]") {
 
 TEST_CASE("a scene without camera gets one from which every vertex is in the picture",
           "[load][overrides]") {
-  const Scene scene = load({}, R"({"materials": [{"name": "m"}], "shapes": [
+  const Scene scene = load_with({}, R"({"materials": [{"name": "m"}], "shapes": [
     {"shape": "box", "material": "m", "min": [10, -3, 5], "max": [14, 30, 6]},
     {"shape": "sphere", "material": "m", "center": [-4, 0, 0], "radius": 3}]})");
   const Camera& camera = scene.cameras.at(0);

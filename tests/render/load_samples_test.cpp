@@ -8,6 +8,7 @@
 
 #include "catch.h"
 #include "load_support.h"
+#include "read_text.h"
 #include "shared_scenes.h"
 
 namespace psf::render {
@@ -22,11 +23,6 @@ std::vector<fs::path> sample_scenes() {
   }
   std::sort(paths.begin(), paths.end());
   return paths;
-}
-
-std::string read(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
 // Leaves bytes where the next function has its variables.
@@ -60,7 +56,7 @@ TEST_CASE("every sample scene loads without a warning and has light and camera",
 TEST_CASE("a sample scene cut anywhere is malformed JSON", "[load][samples]") {
   const TempFolder folder;
   for (const fs::path& path : sample_scenes()) {
-    const std::string text = read(path);
+    const std::string text = psf::tests::read_text(path);
     const std::size_t end = text.find_last_of('}');
     for (std::size_t length = 0; length <= end; length += 61) {
       const Failure failure = load_failure(folder.write("cut.json", text.substr(0, length)));
@@ -74,7 +70,8 @@ TEST_CASE("a sample scene cut anywhere is malformed JSON", "[load][samples]") {
 TEST_CASE("a sample scene with a character changed loads or is an error of one line",
           "[load][samples]") {
   const TempFolder folder;
-  const std::string text = read(fs::path(PSF_SOURCE_DIR) / "sample_data/cornell.json");
+  const std::string text =
+      psf::tests::read_text(fs::path(PSF_SOURCE_DIR) / "sample_data/cornell.json");
   std::size_t refused = 0, tried = 0;
   for (const char change : {'9', '-', '"', '}', 'x'}) {
     for (std::size_t i = 0; i < text.size(); i += 13) {

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 
+#include "catch.h"
 #include "core/error.h"
 #include "render/load.h"
 
@@ -56,6 +57,14 @@ inline Failure load_failure(const std::string& path, const SceneOverrides& overr
     return {error.code(), message};
   }
   return {};
+}
+
+// To within the roundings of a loader.
+inline void check_point(const Vec3& got, const Vec3& expected) {
+  for (int c = 0; c < 3; ++c) CHECK(double{got[c]} == Approx(double{expected[c]}).margin(1e-5));
+}
+inline void check_color(const Rgb& got, const Rgb& expected, double margin = 1e-4) {
+  for (int c = 0; c < 3; ++c) CHECK(double{got[c]} == Approx(double{expected[c]}).margin(margin));
 }
 
 inline bool contains(const std::string& text, const std::string& part) {

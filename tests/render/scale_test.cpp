@@ -139,7 +139,7 @@ double mean_of(const std::vector<Rgb>& pixels) {
   return sum / static_cast<double>(3 * pixels.size());
 }
 
-Scene load(const TempFolder& folder, const json& scene) {
+Scene load_json(const TempFolder& folder, const json& scene) {
   return load_scene(folder.write("s.json", scene.dump()));
 }
 
@@ -154,12 +154,12 @@ const Move kMoves[] = {{1e-6, {0, 0, 0}},      {1e-4, {0, 0, 0}},
 
 TEST_CASE("a Cornell box of any size and anywhere is the same picture", "[scale]") {
   const TempFolder folder;
-  const std::vector<Rgb> expected = picture(load(folder, box_scene({})));
-  const double noise = rel_mse(picture(load(folder, box_scene({})), 1), expected);
+  const std::vector<Rgb> expected = picture(load_json(folder, box_scene({})));
+  const double noise = rel_mse(picture(load_json(folder, box_scene({})), 1), expected);
   CHECK(noise > 0.01);
   for (const Move& move : kMoves) {
     for (const bool transformed : {true, false}) {
-      const Scene scene = load(folder, transformed ? box_scene(move) : coordinates(move));
+      const Scene scene = load_json(folder, transformed ? box_scene(move) : coordinates(move));
       const std::vector<Rgb> found = picture(scene);
       INFO(move.scale << " at " << triple(move.offset));
       // The same numbers of the sampler: what is left are paths that rounding sends elsewhere.
@@ -171,10 +171,10 @@ TEST_CASE("a Cornell box of any size and anywhere is the same picture", "[scale]
 
 TEST_CASE("ambient occlusion reaches as far in a scene of any size and anywhere", "[scale]") {
   const TempFolder folder;
-  const std::vector<Rgb> expected = picture(load(folder, box_scene({})), 0, "ao", 0.5);
+  const std::vector<Rgb> expected = picture(load_json(folder, box_scene({})), 0, "ao", 0.5);
   for (const Move& move : kMoves) {
     INFO(move.scale << " at " << triple(move.offset));
-    const auto found = picture(load(folder, box_scene(move)), 0, "ao", 0.5 * move.scale);
+    const auto found = picture(load_json(folder, box_scene(move)), 0, "ao", 0.5 * move.scale);
     CHECK(std::abs(mean_of(found) / mean_of(expected) - 1) < 0.005);
   }
 }
@@ -183,7 +183,7 @@ TEST_CASE("ambient occlusion reaches as far in a scene of any size and anywhere"
 TEST_CASE("a dump of a scene of any size and anywhere has world units", "[scale]") {
   const TempFolder folder;
   const auto dump = [&](const Move& move) {
-    const Scene scene = load(folder, box_scene(move));
+    const Scene scene = load_json(folder, box_scene(move));
     const RenderSettings settings = settings_of("direct", 0);
     const auto integrator = make_integrator(scene, settings.integrator);
     const tests::TempFolder out;

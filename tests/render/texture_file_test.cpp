@@ -51,7 +51,7 @@ std::string refusal(const std::string& path, TextureUse use = TextureUse::radian
   return "";
 }
 
-void check_color(const Rgb& got, const Rgb& expected, double margin = 1e-3) {
+void check_read(const Rgb& got, const Rgb& expected, double margin = 1e-3) {
   for (int c = 0; c < 3; ++c) CHECK(double{got[c]} == Approx(double{expected[c]}).margin(margin));
 }
 
@@ -95,10 +95,10 @@ TEST_CASE("an OpenEXR fills its display window, black around the data", "[textur
       load(write_picture(folder, "w.exr", spec, {0.25f, 0.5f, 0.75f, 1, 0, 0})).texture;
   REQUIRE(texture.width() == 4);
   REQUIRE(texture.height() == 3);
-  check_color(texture.texel(2, 1), {0.25f, 0.5f, 0.75f});
-  check_color(texture.texel(3, 1), {1, 0, 0});
+  check_read(texture.texel(2, 1), {0.25f, 0.5f, 0.75f});
+  check_read(texture.texel(3, 1), {1, 0, 0});
   for (std::size_t i = 0; i < 12; ++i) {
-    if (i / 4 != 1 || i % 4 < 2) check_color(texture.texel(i % 4, i / 4), Rgb(0));
+    if (i / 4 != 1 || i % 4 < 2) check_read(texture.texel(i % 4, i / 4), Rgb(0));
   }
   // Overscan is cut.
   spec = ImageSpec(3, 1, 3, TypeDesc::HALF);
@@ -106,7 +106,7 @@ TEST_CASE("an OpenEXR fills its display window, black around the data", "[textur
   const Texture cut =
       load(write_picture(folder, "c.exr", spec, {1, 1, 1, 0.5f, 0.25f, 0, 1, 1, 1})).texture;
   REQUIRE(cut.width() == 1);
-  check_color(cut.texel(0, 0), {0.5f, 0.25f, 0});
+  check_read(cut.texel(0, 0), {0.5f, 0.25f, 0});
   spec.x = 5;
   CHECK(contains(refusal(write_picture(folder, "o.exr", spec, std::vector<float>(9, 0.5f))),
                  "outside its display window"));
@@ -117,9 +117,9 @@ TEST_CASE("premultiplied colours are divided by alpha, light is not", "[texture]
   const ImageSpec spec(2, 1, 4, TypeDesc::FLOAT);
   const std::vector<float> values = {0.25f, 0.125f, 0, 0.5f, 0.25f, 0.25f, 0.25f, 0};
   const std::string path = write_picture(folder, "a.exr", spec, values);
-  check_color(load(path).texture.texel(0, 0), {0.5f, 0.25f, 0});
-  check_color(load(path).texture.texel(1, 0), {0.25f, 0.25f, 0.25f});
-  check_color(load(path, TextureUse::radiance).texture.texel(0, 0), {0.25f, 0.125f, 0});
+  check_read(load(path).texture.texel(0, 0), {0.5f, 0.25f, 0});
+  check_read(load(path).texture.texel(1, 0), {0.25f, 0.25f, 0.25f});
+  check_read(load(path, TextureUse::radiance).texture.texel(0, 0), {0.25f, 0.125f, 0});
 }
 
 TEST_CASE("colours of other primaries become those of Rec. 709", "[texture]") {
@@ -130,20 +130,20 @@ TEST_CASE("colours of other primaries become those of Rec. 709", "[texture]") {
   ImageSpec spec(1, 1, 3, TypeDesc::FLOAT);
   spec.attribute("chromaticities", TypeDesc(TypeDesc::FLOAT, 8), aces);
   const Texture a = load(write_picture(folder, "a.exr", spec, {0.3f, 0.2f, 0.1f})).texture;
-  check_color(a.texel(0, 0),
-              {0.3f * 2.5217f - 0.2f * 1.1341f - 0.1f * 0.3876f,
-               -0.3f * 0.2765f + 0.2f * 1.3727f - 0.1f * 0.0962f,
-               -0.3f * 0.0154f - 0.2f * 0.1530f + 0.1f * 1.1684f},
-              2e-3);
+  check_read(a.texel(0, 0),
+             {0.3f * 2.5217f - 0.2f * 1.1341f - 0.1f * 0.3876f,
+              -0.3f * 0.2765f + 0.2f * 1.3727f - 0.1f * 0.0962f,
+              -0.3f * 0.0154f - 0.2f * 0.1530f + 0.1f * 1.1684f},
+             2e-3);
   // Rec. 2020 has the same white; its published matrix.
   spec.attribute("chromaticities", TypeDesc(TypeDesc::FLOAT, 8), wide);
   const std::string path = write_picture(folder, "w.exr", spec, {0.3f, 0.2f, 0.1f});
-  check_color(load(path, TextureUse::radiance).texture.texel(0, 0),
-              {0.3f * 1.6605f - 0.2f * 0.5876f - 0.1f * 0.0728f,
-               -0.3f * 0.1246f + 0.2f * 1.1329f - 0.1f * 0.0083f,
-               -0.3f * 0.0182f - 0.2f * 0.1006f + 0.1f * 1.1187f},
-              2e-3);
-  check_color(load(path, TextureUse::numbers).texture.texel(0, 0), {0.3f, 0.2f, 0.1f});
+  check_read(load(path, TextureUse::radiance).texture.texel(0, 0),
+             {0.3f * 1.6605f - 0.2f * 0.5876f - 0.1f * 0.0728f,
+              -0.3f * 0.1246f + 0.2f * 1.1329f - 0.1f * 0.0083f,
+              -0.3f * 0.0182f - 0.2f * 0.1006f + 0.1f * 1.1187f},
+             2e-3);
+  check_read(load(path, TextureUse::numbers).texture.texel(0, 0), {0.3f, 0.2f, 0.1f});
 }
 
 TEST_CASE("a gamma of the file replaces sRGB, unless the scene says otherwise", "[texture]") {
@@ -153,18 +153,18 @@ TEST_CASE("a gamma of the file replaces sRGB, unless the scene says otherwise", 
   spec.attribute("oiio:Gamma", 1.8f);
   const std::vector<float> grey(3, 0.6f);
   const std::string path = write_picture(folder, "g.png", spec, grey);
-  check_color(load(path).texture.texel(0, 0), Rgb(std::pow(153 / 255.0f, 1.8f)));
-  check_color(load(path, TextureUse::numbers).texture.texel(0, 0), Rgb(153 / 255.0f));
+  check_read(load(path).texture.texel(0, 0), Rgb(std::pow(153 / 255.0f, 1.8f)));
+  check_read(load(path, TextureUse::numbers).texture.texel(0, 0), Rgb(153 / 255.0f));
   std::vector<std::string> notes;
-  check_color(Texture::load(path, TextureUse::reflectance, notes, true).texel(0, 0),
-              Rgb(srgb_to_linear(153 / 255.0f)));
+  check_read(Texture::load(path, TextureUse::reflectance, notes, true).texel(0, 0),
+             Rgb(srgb_to_linear(153 / 255.0f)));
   spec.attribute("oiio:ColorSpace", "Linear");
   spec.attribute("oiio:Gamma", 1.0f);
-  check_color(load(write_picture(folder, "l.png", spec, grey)).texture.texel(0, 0),
-              Rgb(153 / 255.0f));
+  check_read(load(write_picture(folder, "l.png", spec, grey)).texture.texel(0, 0),
+             Rgb(153 / 255.0f));
   const ImageSpec plain(1, 1, 3, TypeDesc::UINT16);
-  check_color(load(write_picture(folder, "s.png", plain, grey)).texture.texel(0, 0),
-              Rgb(srgb_to_linear(0.6f)));
+  check_read(load(write_picture(folder, "s.png", plain, grey)).texture.texel(0, 0),
+             Rgb(srgb_to_linear(0.6f)));
 }
 
 TEST_CASE("cube maps and chroma are refused by name", "[texture]") {
@@ -207,7 +207,7 @@ TEST_CASE("colours are found by name, layers and parts are told", "[texture]") {
   spec.channelnames = {"beauty.B", "beauty.G", "beauty.R", "depth.Z"};
   spec.alpha_channel = -1;
   const Loaded layered = load(write_picture(folder, "l.exr", spec, {0.1f, 0.2f, 0.3f, 9}));
-  check_color(layered.texture.texel(0, 0), {0.3f, 0.2f, 0.1f});
+  check_read(layered.texture.texel(0, 0), {0.3f, 0.2f, 0.1f});
   REQUIRE(layered.notes.size() == 1);
   CHECK(contains(layered.notes[0], "l.exr: has layers, beauty.RGB is taken"));
 
@@ -222,7 +222,7 @@ TEST_CASE("colours are found by name, layers and parts are told", "[texture]") {
   REQUIRE(out->write_image(TypeDesc::FLOAT, second));
   REQUIRE(out->close());
   const Loaded several = load(path);
-  check_color(several.texture.texel(0, 0), {0.5f, 0.25f, 0});
+  check_read(several.texture.texel(0, 0), {0.5f, 0.25f, 0});
   REQUIRE(several.notes.size() == 1);
   CHECK(contains(several.notes[0], "p.exr: has several parts, the first is taken"));
 }

@@ -12,41 +12,41 @@ Texture corners() {
   return Texture(2, 2, {Rgb(1, 0, 0), Rgb(0, 1, 0), Rgb(0, 0, 1), Rgb(0, 0, 0)});
 }
 
-Texture load(const std::string& path, TextureUse use) {
+Texture read_texture(const std::string& path, TextureUse use) {
   std::vector<std::string> notes;
   Texture texture = Texture::load(path, use, notes);
   CHECK(notes.empty());
   return texture;
 }
 
-void check_color(const Rgb& got, const Rgb& expected) {
+void check_texel(const Rgb& got, const Rgb& expected) {
   for (int c = 0; c < 3; ++c) CHECK(got[c] == Approx(expected[c]).margin(1e-6));
 }
 
 TEST_CASE("a texture's rows go down while v goes up", "[texture]") {
   const Texture texture = corners();
-  check_color(texture.at({0.25f, 0.75f}), {1, 0, 0});
-  check_color(texture.at({0.75f, 0.75f}), {0, 1, 0});
-  check_color(texture.at({0.25f, 0.25f}), {0, 0, 1});
-  check_color(texture.texel(1, 0), {0, 1, 0});
+  check_texel(texture.at({0.25f, 0.75f}), {1, 0, 0});
+  check_texel(texture.at({0.75f, 0.75f}), {0, 1, 0});
+  check_texel(texture.at({0.25f, 0.25f}), {0, 0, 1});
+  check_texel(texture.texel(1, 0), {0, 1, 0});
 }
 
 TEST_CASE("lookups are bilinear between texel centres", "[texture]") {
   const Texture texture = corners();
-  check_color(texture.at({0.5f, 0.5f}), {0.25f, 0.25f, 0.25f});
+  check_texel(texture.at({0.5f, 0.5f}), {0.25f, 0.25f, 0.25f});
   // 3/4 of the left column and 1/4 of the right, top row.
-  check_color(texture.at({0.375f, 0.75f}), {0.75f, 0.25f, 0});
-  check_color(texture.at({0.25f, 0.625f}), {0.75f, 0, 0.25f});
+  check_texel(texture.at({0.375f, 0.75f}), {0.75f, 0.25f, 0});
+  check_texel(texture.at({0.25f, 0.625f}), {0.75f, 0, 0.25f});
 }
 
 TEST_CASE("a texture repeats in both directions, over its edge too", "[texture]") {
   const Texture texture = corners();
-  check_color(texture.at({3.25f, -0.25f}), texture.at({0.25f, 0.75f}));
+  check_texel(texture.at({3.25f, -0.25f}), texture.at({0.25f, 0.75f}));
   // Between the last column and the first.
-  check_color(texture.at({1.0f, 0.75f}), {0.5f, 0.5f, 0});
-  check_color(texture.at({0.0f, 0.75f}), {0.5f, 0.5f, 0});
-  check_color(texture.at({0.25f, 1.0f}), {0.5f, 0, 0.5f});
-  check_color(texture.at({-1e-9f, 0.75f}), {0.5f, 0.5f, 0});
+  check_texel(texture.at({1.0f, 0.75f}), {0.5f, 0.5f, 0});
+  check_texel(texture.at({0.0f, 0.75f}), {0.5f, 0.5f, 0});
+  check_texel(texture.at({0.25f, 1.0f}), {0.5f, 0, 0.5f});
+  check_texel(texture.at({-1e-9f, 0.75f}), {0.5f, 0.5f, 0});
 }
 
 TEST_CASE("a lookup that is not finite gives some texel", "[texture]") {
@@ -57,24 +57,25 @@ TEST_CASE("a lookup that is not finite gives some texel", "[texture]") {
 TEST_CASE("8-bit files are sRGB or linear, as asked", "[texture]") {
   const TempFolder folder;
   const std::string path = folder.write("three.ppm", ppm(3, "188 188 188  255 0 0  10 0 0"));
-  const Texture srgb = load(path, TextureUse::reflectance);
+  const Texture srgb = read_texture(path, TextureUse::reflectance);
   CHECK(srgb.width() == 3);
   CHECK(srgb.height() == 1);
   CHECK(srgb.texel(0, 0).x == Approx(0.5029).margin(1e-4));
-  check_color(srgb.texel(1, 0), {1, 0, 0});
+  check_texel(srgb.texel(1, 0), {1, 0, 0});
   CHECK(srgb.texel(2, 0).x ==
         Approx(10 / 255.0 / 12.92).epsilon(1e-5));  // the straight part of the curve
-  CHECK(load(path, TextureUse::numbers).texel(0, 0).y == Approx(188 / 255.0));
+  CHECK(read_texture(path, TextureUse::numbers).texel(0, 0).y == Approx(188 / 255.0));
 }
 
 TEST_CASE("grey becomes RGB, and float files are linear whatever is asked", "[texture]") {
   const TempFolder folder;
-  check_color(load(folder.write("grey.pgm", "P2\n1 1\n255\n51\n"), TextureUse::numbers).texel(0, 0),
-              {0.2f, 0.2f, 0.2f});
+  check_texel(
+      read_texture(folder.write("grey.pgm", "P2\n1 1\n255\n51\n"), TextureUse::numbers).texel(0, 0),
+      {0.2f, 0.2f, 0.2f});
   // 1 x 1, little-endian: 0.5, 2, 0.25.
   const std::string values("\x00\x00\x00\x3f\x00\x00\x00\x40\x00\x00\x80\x3e", 12);
   const std::string pfm = folder.write("one.pfm", "PF\n1 1\n-1.0\n" + values);
-  check_color(load(pfm, TextureUse::radiance).texel(0, 0), {0.5f, 2, 0.25f});
+  check_texel(read_texture(pfm, TextureUse::radiance).texel(0, 0), {0.5f, 2, 0.25f});
 }
 
 TEST_CASE("colours under a transparent alpha are as stored", "[texture]") {
@@ -86,14 +87,14 @@ TEST_CASE("colours under a transparent alpha are as stored", "[texture]") {
   std::vector<std::string> notes;
   const Texture texture =
       Texture::decode({data, bytes.size()}, "embedded", TextureUse::numbers, notes);
-  check_color(texture.texel(0, 0), {1, 0.4f, 0.2f});
+  check_texel(texture.texel(0, 0), {1, 0.4f, 0.2f});
 }
 
 TEST_CASE("a texture that is missing, no picture or empty is named", "[texture]") {
   const TempFolder folder;
   const auto failure = [](const std::string& path) {
     try {
-      (void)load(path, TextureUse::radiance);
+      (void)read_texture(path, TextureUse::radiance);
     } catch (const Error& error) {
       return Failure{error.code(), error.what()};
     }

@@ -19,14 +19,14 @@ using psf::tests::painted;
 
 namespace {
 
-Metrics measure(const std::vector<Rgb>& picture, const std::vector<Rgb>& reference,
-                std::size_t width, const MetricOptions& options = {}) {
+Metrics measure_display(const std::vector<Rgb>& picture, const std::vector<Rgb>& reference,
+                        std::size_t width, const MetricOptions& options = {}) {
   return Reference(reference, width, options).measure(picture);
 }
 
 double of_constants(Metric metric, const Rgb& picture, const Rgb& reference) {
   const std::vector<Rgb> a(20 * 20, picture), b(20 * 20, reference);
-  return measure(a, b, 20)[metric];
+  return measure_display(a, b, 20)[metric];
 }
 
 template <class T>
@@ -98,7 +98,7 @@ TEST_CASE("FLIP and SSIM are symmetric, in range, and grow with the noise") {
       CHECK(error >= 0);
       CHECK(error <= 1);
     }
-    const Metrics there = errors.mean(), back = measure(reference, picture, width);
+    const Metrics there = errors.mean(), back = measure_display(reference, picture, width);
     CHECK(there[Metric::flip] == back[Metric::flip]);
     CHECK(there[Metric::ssim] == back[Metric::ssim]);
     CHECK(there[Metric::flip] > flip);
@@ -135,12 +135,12 @@ TEST_CASE("an exposure of e is the pictures times 2^e") {
   for (Rgb& color : bright_picture) color *= 4.0f;
   MetricOptions options;
   options.exposure = 2;
-  const Metrics exposed = measure(picture, reference, 40, options);
-  const Metrics bright = measure(bright_picture, bright_reference, 40);
+  const Metrics exposed = measure_display(picture, reference, 40, options);
+  const Metrics bright = measure_display(bright_picture, bright_reference, 40);
   CHECK(exposed[Metric::flip] == bright[Metric::flip]);
   CHECK(exposed[Metric::ssim] == bright[Metric::ssim]);
-  CHECK(exposed[Metric::flip] != measure(picture, reference, 40)[Metric::flip]);
-  CHECK(exposed[Metric::mse] == measure(picture, reference, 40)[Metric::mse]);
+  CHECK(exposed[Metric::flip] != measure_display(picture, reference, 40)[Metric::flip]);
+  CHECK(exposed[Metric::mse] == measure_display(picture, reference, 40)[Metric::mse]);
 }
 
 TEST_CASE("SSIM counts the pixels whose window lies in the picture, or all where there are none") {
@@ -158,7 +158,7 @@ TEST_CASE("SSIM counts the pixels whose window lies in the picture, or all where
   CHECK(errors.mean(corner)[Metric::ssim] ==
         Approx(1 - (errors.map(Metric::ssim)[0] + errors.map(Metric::ssim)[1]) / 2));
   const std::vector<Rgb> narrow(8, Rgb(0.2f)), other(8, Rgb(0.3f));
-  CHECK(std::isfinite(measure(narrow, other, 4)[Metric::ssim]));
+  CHECK(std::isfinite(measure_display(narrow, other, 4)[Metric::ssim]));
 }
 
 TEST_CASE("SSIM and FLIP are those of numpy with whole kernels, pixel by pixel") {

@@ -12,12 +12,12 @@ namespace {
 
 using Picture = std::vector<Rgb>;
 
-constexpr std::size_t kWidth = 40, kPixels = 40 * 30;
+constexpr std::size_t kWidth = 40, kReplicatePixels = 40 * 30;
 constexpr double kEpsilon = 0.01;
 
 Picture reference() {
-  Picture picture(kPixels);
-  for (std::size_t k = 0; k < kPixels; ++k) {
+  Picture picture(kReplicatePixels);
+  for (std::size_t k = 0; k < kReplicatePixels; ++k) {
     const auto v = static_cast<float>(k % kWidth) / kWidth;
     picture[k] = Rgb(v, 1 - v, 2);
   }
@@ -31,7 +31,7 @@ std::vector<Picture> replicates(std::size_t count, double bias, double noise, un
   const Picture truth = reference();
   std::vector<Picture> pictures(count, truth);
   for (Picture& picture : pictures) {
-    for (std::size_t k = 0; k < kPixels; ++k) {
+    for (std::size_t k = 0; k < kReplicatePixels; ++k) {
       for (int c = 0; c < 3; ++c) {
         const double r = double{truth[k][c]};
         const double scale = std::sqrt(r * r + kEpsilon);

@@ -13,8 +13,8 @@ namespace {
 
 using namespace tests;  // NOLINT: the set-up that these tests share
 
-constexpr std::size_t kSide = 8, kPixels = kSide * kSide;
-const std::vector<filter::CameraView> kCamera = {{kSide, kSide, 0.05}};
+constexpr std::size_t kSourceSide = 8, kSourcePixels = kSourceSide * kSourceSide;
+const std::vector<filter::CameraView> kCamera = {{kSourceSide, kSourceSide, 0.05}};
 
 FilterRun run_with(std::uint32_t sources, filter::Estimator estimator) {
   FilterRun run;
@@ -28,7 +28,7 @@ FilterRun run_with(std::uint32_t sources, filter::Estimator estimator) {
 
 // The share of a pixel's paths that meets a surface; it grows with the column from none to all.
 double share_of_surface(std::size_t pixel) {
-  return static_cast<double>(pixel % kSide) / (kSide - 1);
+  return static_cast<double>(pixel % kSourceSide) / (kSourceSide - 1);
 }
 constexpr double kSky = 1, kBefore = 0.5, kReflected = 3;  // means of u, u and alpha c
 double truth(std::size_t pixel) {
@@ -40,9 +40,9 @@ RecordSet render(std::size_t passes, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::exponential_distribution<float> noise;
   std::uniform_real_distribution<double> unit(0, 1);
-  RecordSet set(passes * kPixels);
+  RecordSet set(passes * kSourcePixels);
   for (std::size_t i = 0; i < set.size(); ++i) {
-    set.pixel[i] = static_cast<std::uint32_t>(i % kPixels);
+    set.pixel[i] = static_cast<std::uint32_t>(i % kSourcePixels);
     const bool surface = unit(random) < share_of_surface(set.pixel[i]);
     set.flags[i] = surface ? 3 : 0;
     set.unfiltered[i] = surface ? Rgb(1, 1, 1) * 0.5f : Rgb(1, 1, 1) * noise(random);
@@ -54,7 +54,7 @@ RecordSet render(std::size_t passes, std::uint32_t seed) {
 
 // One path in three of each pixel, by the pixel and the pass.
 bool is_shaded(std::size_t i) {
-  return (i % kPixels + 2 * (i % kPixels / kSide) + i / kPixels) % 3 == 0;
+  return (i % kSourcePixels + 2 * (i % kSourcePixels / kSourceSide) + i / kSourcePixels) % 3 == 0;
 }
 void shade_one_in_three(RecordSet& set, bool flags_say_so) {
   for (std::size_t i = 0; i < set.size(); ++i) {
@@ -66,7 +66,7 @@ void shade_one_in_three(RecordSet& set, bool flags_say_so) {
 // For each pixel the mean over many renders of what `picture` returns, minus the truth, in standard
 // errors.
 struct Deviations {
-  std::array<double, kPixels> off{}, relative{};
+  std::array<double, kSourcePixels> off{}, relative{};
 
   [[nodiscard]] double most() const {
     double most = 0;
@@ -77,16 +77,16 @@ struct Deviations {
 template <typename Picture>
 Deviations deviations(const Picture& picture) {
   constexpr std::size_t kRenders = 150;
-  std::array<double, kPixels> sum{}, sum_sq{};
+  std::array<double, kSourcePixels> sum{}, sum_sq{};
   for (std::uint32_t seed = 1; seed <= kRenders; ++seed) {
     const std::vector<float> green = picture(seed);
-    for (std::size_t k = 0; k < kPixels; ++k) {
+    for (std::size_t k = 0; k < kSourcePixels; ++k) {
       sum[k] += double{green[k]};
       sum_sq[k] += double{green[k]} * double{green[k]};
     }
   }
   Deviations result;
-  for (std::size_t k = 0; k < kPixels; ++k) {
+  for (std::size_t k = 0; k < kSourcePixels; ++k) {
     const double mean = sum[k] / kRenders;
     const double error = std::sqrt((sum_sq[k] / kRenders - mean * mean) / (kRenders - 1));
     result.off[k] = (mean - truth(k)) / error;
@@ -114,7 +114,7 @@ TEST_CASE("A share of the sources gives each pixel the mean of all paths, sky an
     INFO("1/" << one.sources << ", estimator " << static_cast<int>(one.estimator));
     const Deviations got = deviations([&](std::uint32_t seed) {
       write_dump(folder / "a.pvb", render(16, seed),
-                 {kCamera, std::vector<std::size_t>(16, kPixels), {}});
+                 {kCamera, std::vector<std::size_t>(16, kSourcePixels), {}});
       return unfiltered(folder / "a.pvb", run_with(one.sources, one.estimator));
     });
     CHECK(got.most() < kMost);
@@ -129,7 +129,7 @@ TEST_CASE("So does a dump in which one path in three is shaded") {
       const Deviations got = deviations([&](std::uint32_t seed) {
         RecordSet set = render(24, seed);
         shade_one_in_three(set, says_so);
-        DumpOptions options{kCamera, std::vector<std::size_t>(24, kPixels), {}};
+        DumpOptions options{kCamera, std::vector<std::size_t>(24, kSourcePixels), {}};
         options.shade_rate = says_so ? 3 : 1;
         write_dump(folder / "a.pvb", set, options);
         return unfiltered(folder / "a.pvb", run_with(sources, filter::Estimator::average));
@@ -143,7 +143,7 @@ TEST_CASE("So does a dump in which one path in three is shaded") {
           CHECK(std::abs(relative) < 0.35);
           sum += relative;
         }
-        CHECK(std::abs(sum / kPixels) < 0.03);
+        CHECK(std::abs(sum / kSourcePixels) < 0.03);
       }
     }
   }
@@ -157,10 +157,10 @@ TEST_CASE("Of a surface as bright as the sky nothing can be seen, however few pa
     set.unfiltered[i] = surface ? Rgb(0, 0, 0) : Rgb(2, 2, 2);
     set.contribution[i] = Rgb(4, 4, 4);
   }
-  write_dump(folder / "a.pvb", set, {kCamera, std::vector<std::size_t>(3, kPixels), {}});
+  write_dump(folder / "a.pvb", set, {kCamera, std::vector<std::size_t>(3, kSourcePixels), {}});
   for (const std::uint32_t sources : {1u, 2u, 16u, 50u}) {
     CHECK(unfiltered(folder / "a.pvb", run_with(sources, filter::Estimator::average)) ==
-          std::vector<float>(kPixels, 2.0f));
+          std::vector<float>(kSourcePixels, 2.0f));
   }
 }
 
@@ -168,15 +168,15 @@ TEST_CASE("A pixel without any path is black, and a sweep has the same picture w
   const TempFolder folder;
   RecordSet set = render(3, 10);
   for (std::uint32_t& pixel : set.pixel) pixel = pixel % 2 == 0 ? pixel : pixel - 1;
-  write_dump(folder / "a.pvb", set, {kCamera, std::vector<std::size_t>(3, kPixels), {}});
+  write_dump(folder / "a.pvb", set, {kCamera, std::vector<std::size_t>(3, kSourcePixels), {}});
   const FilterRun run = run_with(5, filter::Estimator::average);
   const std::vector<float> picture = unfiltered(folder / "a.pvb", run);
   std::size_t bright = 0;
-  for (std::size_t k = 0; k < kPixels; ++k) {
+  for (std::size_t k = 0; k < kSourcePixels; ++k) {
     if (k % 2 == 1) CHECK(picture[k] == 0);
     bright += picture[k] > 0 ? 1u : 0u;
   }
-  CHECK(bright > kPixels / 3);
+  CHECK(bright > kSourcePixels / 3);
   study::ManyRun many;
   many.parameters = run.parameters;
   const std::vector<filter::Radius> radii = {run.parameters.radius,
@@ -186,7 +186,7 @@ TEST_CASE("A pixel without any path is black, and a sweep has the same picture w
   // Whatever the unit of a radius, it is told in pixels.
   CHECK(outcome.last_radius[1] == Approx(1 / 0.05 / std::pow(3, 1.0 / 6)));
   const std::vector<Rgb> swept = outcome.pictures[0].unfiltered();
-  for (std::size_t k = 0; k < kPixels; ++k) CHECK(swept[k].y == picture[k]);
+  for (std::size_t k = 0; k < kSourcePixels; ++k) CHECK(swept[k].y == picture[k]);
 }
 
 }  // namespace

@@ -70,21 +70,22 @@ TEST_CASE("The error that halves estimate is the error against the truth") {
   }
 }
 
-constexpr std::size_t kSide = 64;  // pixels
+constexpr std::size_t kTuneSide = 64;  // pixels
 constexpr std::size_t kPasses = 8;
 
-// A square of kSide x kSide pixels, seen from above at distance 1, with noise of mean `truth(x)` a
+// A square of kTuneSide x kTuneSide pixels, seen from above at distance 1, with noise of mean `truth(x)` a
 // column, `u` added to each path.
 template <class Truth, class Unfiltered>
 RecordSet square(const Truth& truth, const Unfiltered& u) {
   std::mt19937 random(3);
   std::exponential_distribution<double> exponential;
-  RecordSet set(kSide * kSide * kPasses);
+  RecordSet set(kTuneSide * kTuneSide * kPasses);
   for (std::size_t i = 0; i < set.size(); ++i) {
-    const std::size_t pixel = i % (kSide * kSide), x = pixel % kSide, y = pixel / kSide;
+    const std::size_t pixel = i % (kTuneSide * kTuneSide), x = pixel % kTuneSide,
+                      y = pixel / kTuneSide;
     set.pixel[i] = static_cast<std::uint32_t>(pixel);
-    set.position[i] =
-        Vec3((static_cast<float>(x) + 0.5f) / kSide, (static_cast<float>(y) + 0.5f) / kSide, 0);
+    set.position[i] = Vec3((static_cast<float>(x) + 0.5f) / kTuneSide,
+                           (static_cast<float>(y) + 0.5f) / kTuneSide, 0);
     const auto c = static_cast<float>(truth(x) * exponential(random));
     set.contribution[i] = Rgb(c, c, c);
     const auto more = static_cast<float>(u(i));
@@ -96,9 +97,9 @@ RecordSet square(const Truth& truth, const Unfiltered& u) {
 study::Tuning tune_square(const std::string& path, const RecordSet& set,
                           const std::vector<filter::Parameters>& sets) {
   tests::DumpOptions options;
-  options.cameras = {{kSide, kSide, 1.0 / kSide}};
-  options.passes.assign(kPasses, kSide * kSide);
-  options.chunk_capacity = kSide * kSide;
+  options.cameras = {{kTuneSide, kTuneSide, 1.0 / kTuneSide}};
+  options.passes.assign(kPasses, kTuneSide * kTuneSide);
+  options.chunk_capacity = kTuneSide * kTuneSide;
   tests::write_dump(path, set, options);
   study::Tune tune;
   tune.sets = sets;
@@ -108,17 +109,17 @@ study::Tuning tune_square(const std::string& path, const RecordSet& set,
 TEST_CASE("A set's own smear does not make its error seem small") {
   // A bright line on the dark, as the rim of a lamp: wide balls make a bright band of it.
   const tests::TempFolder folder;
-  const std::size_t line = kSide / 2;
+  const std::size_t line = kTuneSide / 2;
   const auto truth = [&](std::size_t x) { return x >= line && x < line + 3 ? 300.0 : 0.3; };
   const std::vector<filter::Parameters> sets = radii(1);
   const study::Tuning tuning =
       tune_square(folder / "a.pvb", square(truth, [](std::size_t) { return 0.0; }), sets);
-  std::vector<Rgb> picture(kSide * kSide);
+  std::vector<Rgb> picture(kTuneSide * kTuneSide);
   for (std::size_t k = 0; k < picture.size(); ++k) {
-    const auto value = static_cast<float>(truth(k % kSide));
+    const auto value = static_cast<float>(truth(k % kTuneSide));
     picture[k] = Rgb(value, value, value);
   }
-  const study::Reference reference(picture, kSide, {}, study::kPixelMetrics);
+  const study::Reference reference(picture, kTuneSide, {}, study::kPixelMetrics);
   study::ManyRun run;
   run.parameters = sets[0];
   for (const filter::Parameters& set : sets) run.radii.push_back(set.radius);
@@ -133,7 +134,7 @@ TEST_CASE("A set's own smear does not make its error seem small") {
 
 TEST_CASE("The noise of u is told apart and decides nothing") {
   const tests::TempFolder folder;
-  const auto truth = [](std::size_t x) { return 1 + static_cast<double>(x) / kSide; };
+  const auto truth = [](std::size_t x) { return 1 + static_cast<double>(x) / kTuneSide; };
   const auto none = [](std::size_t) { return 0.0; };
   const auto fireflies = [](std::size_t i) { return i % 997 == 0 ? 1e3 : 0.0; };
   const std::vector<filter::Parameters> sets = radii(1);

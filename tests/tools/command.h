@@ -4,10 +4,10 @@
 #include <sys/wait.h>
 
 #include <cstdlib>
-#include <fstream>
 #include <iterator>
 #include <string>
 
+#include "read_text.h"
 #include "temp_folder.h"
 
 namespace psf::tests {
@@ -16,11 +16,6 @@ struct Outcome {
   int code = -1;  // exit code, 128 + signal where it was killed
   std::string out, err;
 };
-
-inline std::string read_text(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 // `command`: "psf info x.pvb"; the first word is looked up among the programs just built.
 inline Outcome run(const std::string& command) {

@@ -40,7 +40,7 @@ class Bench {
   explicit Bench(const FilterOptions& options)
       : options_(options),
         dump_(open(options.input)),
-        progress_("bench", steps(), options.common.quiet),
+        progress_("bench", options.common.quiet),
         sample_(make_sample(options.records)) {}
 
   void measure() {
@@ -134,7 +134,7 @@ class Bench {
   }
 
   void step() {
-    progress_.advance(++done_);
+    progress_.advance(++done_, steps());
     core::throw_if_interrupted("nothing is written");
   }
 

@@ -44,17 +44,14 @@ void run(const CatOptions& options) {
   // It may replace one of its inputs: until it is whole it has another name.
   check_files({}, {options.output, options.common.json});
   check_files(options.inputs, {options.common.json});
-  std::unique_ptr<core::Progress> progress;
-  const formats::ConcatenateReport report = formats::concatenate(
-      options.inputs, core::followed(options.output), to_library(options),
-      [&](std::uint64_t done, std::uint64_t total) {
-        core::throw_if_interrupted("nothing is written");
-        if (!progress) {
-          progress = std::make_unique<core::Progress>("cat", total, options.common.quiet);
-        }
-        progress->advance(done);
-      });
-  if (progress) progress->finish();
+  core::Progress progress("cat", options.common.quiet);
+  const formats::ConcatenateReport report =
+      formats::concatenate(options.inputs, core::followed(options.output), to_library(options),
+                           [&](std::uint64_t done, std::uint64_t total) {
+                             core::throw_if_interrupted("nothing is written");
+                             progress.advance(done, total);
+                           });
+  progress.finish();
   if (!options.common.quiet) {
     for (const std::string& note : report.notes) core::say("note: " + note);
     if (report.overflows > 0) {

@@ -40,8 +40,6 @@ struct ConvergeOptions {
   bool all_metrics = false, no_times = false, analytic = false;
 };
 
-constexpr std::size_t kProgressSteps = 1000;
-
 // Means over the files that psf-render --json wrote.
 study::RenderTime read_render_time(const std::vector<std::string>& paths) {
   study::RenderTime mean;
@@ -67,8 +65,7 @@ study::RenderTime read_render_time(const std::vector<std::string>& paths) {
 
 void keep_progress(study::Convergence& convergence, core::Progress& progress) {
   convergence.on_progress = [&progress](std::uint64_t done, std::uint64_t total) {
-    progress.advance(static_cast<std::size_t>(kProgressSteps * static_cast<double>(done) /
-                                              static_cast<double>(total)));
+    progress.advance(done, total);
   };
 }
 
@@ -125,7 +122,7 @@ void run_dumps(const ConvergeOptions& options, filter::TermSet asked) {
   }
   folder.make(std::move(inputs), names, options.common.json);
   print_notes(notes, options.common.quiet);
-  core::Progress progress("converge", kProgressSteps, options.common.quiet);
+  core::Progress progress("converge", options.common.quiet);
   keep_progress(convergence, progress);
   if (options.study.pictures) {
     report.with_pictures = true;
@@ -231,7 +228,7 @@ bool run_analytic(const ConvergeOptions& options, study::AnalyticScene which,
   convergence.n = study::powers_up_to(kPasses);
   convergence.with_times = false;
   convergence.region = study::Analytic::inside(largest);
-  core::Progress progress(scene.name(), kProgressSteps, options.common.quiet);
+  core::Progress progress(scene.name(), options.common.quiet);
   keep_progress(convergence, progress);
   study::ConvergeReport report;
   report.version = kVersion;

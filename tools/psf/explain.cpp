@@ -24,8 +24,6 @@
 namespace psf::tools {
 namespace {
 
-constexpr std::size_t kProgressSteps = 1000;
-
 struct ExplainOptions : ParameterOptions {
   CommonOptions common;
   std::string input, passes, pixel, camera, ply;
@@ -82,10 +80,9 @@ void run(const ExplainOptions& options, filter::TermSet asked) {
   fit_terms(dump, {&request.parameters, 1}, asked, notes);
   print_notes(notes, options.common.quiet);
 
-  core::Progress bar("explain", kProgressSteps, options.common.quiet);
+  core::Progress bar("explain", options.common.quiet);
   request.on_progress = [&bar](std::uint64_t done, std::uint64_t total) {
-    bar.advance(static_cast<std::size_t>(1.0 * kProgressSteps * static_cast<double>(done) /
-                                         static_cast<double>(total)));
+    bar.advance(done, total);
   };
   const study::Explanation explanation = study::explain(dump, request);
   bar.finish();

@@ -28,8 +28,6 @@
 namespace psf::tools {
 namespace {
 
-constexpr std::size_t kProgressSteps = 1000;
-
 struct ExportOptions {
   CommonOptions common;
   std::string input, output, format, passes;
@@ -115,10 +113,9 @@ void run(const ExportOptions& options) {
   check_files({options.input}, {format == "npy" ? "" : options.output, options.common.json});
 
   const formats::Reader reader(options.input);
-  core::Progress bar("export", kProgressSteps, options.common.quiet);
+  core::Progress bar("export", options.common.quiet);
   const study::ExportProgress progress = [&bar](std::uint64_t done, std::uint64_t total) {
-    bar.advance(static_cast<std::size_t>(1.0 * kProgressSteps * static_cast<double>(done) /
-                                         static_cast<double>(total)));
+    bar.advance(done, total);
   };
   const study::ExportOutcome outcome =
       format == "npy"   ? study::export_npy(reader, selection, options.output, progress)

@@ -33,7 +33,6 @@ namespace {
 using core::Clock;
 using core::seconds_since;
 
-constexpr std::size_t kProgressSteps = 1000;
 constexpr std::chrono::milliseconds kBetweenLooks{200};
 constexpr double kPatience = 5;  // seconds without a writer before it is said
 
@@ -112,10 +111,9 @@ std::vector<std::string> filter_all(const study::Dump& dump, study::FilterRun& r
   const auto append = [&](std::vector<std::string> names) {
     written.insert(written.end(), names.begin(), names.end());
   };
-  core::Progress progress("filter", kProgressSteps, quiet);
+  core::Progress progress("filter", quiet);
   run.on_progress = [&progress](std::uint64_t done, std::uint64_t total) {
-    progress.advance(static_cast<std::size_t>(1.0 * kProgressSteps * static_cast<double>(done) /
-                                              static_cast<double>(total)));
+    progress.advance(done, total);
   };
   run.on_snapshot = [&](std::uint64_t passes, std::span<const study::CameraPictures> pictures) {
     append(writer.write(passes, passes, pictures));

@@ -141,11 +141,11 @@ void print_channels(const formats::Reader& reader, const std::vector<formats::Ch
 Statistics read_statistics(const formats::Reader& reader, bool quiet) {
   const std::size_t channels = reader.head().channels.size(), chunks = reader.chunks().size();
   Statistics statistics;
-  core::Progress progress("statistics", channels * chunks, quiet);
+  core::Progress progress("statistics", quiet);
   for (std::size_t k = 0; k < channels; ++k) {
     statistics.push_back(formats::channel_statistics(reader, k, [&](std::size_t done) {
       core::throw_if_interrupted("not all was read");
-      progress.advance(k * chunks + done);
+      progress.advance(k * chunks + done, channels * chunks);
     }));
   }
   progress.finish();

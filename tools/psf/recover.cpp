@@ -57,17 +57,14 @@ void print(const RecoverVerb& verb, const formats::RecoverReport& report) {
 void run(const RecoverVerb& verb) {
   const core::ThreadLimit threads(verb.common.threads);
   check_files({verb.input}, {verb.output, verb.common.json});
-  std::unique_ptr<core::Progress> progress;
-  const formats::RecoverReport report = formats::recover(
-      verb.input, core::followed(verb.output), verb.options,
-      [&](std::uint64_t done, std::uint64_t total) {
-        core::throw_if_interrupted("nothing is written");
-        if (!progress) {
-          progress = std::make_unique<core::Progress>("recover", total, verb.common.quiet);
-        }
-        progress->advance(done);
-      });
-  if (progress) progress->finish();
+  core::Progress progress("recover", verb.common.quiet);
+  const formats::RecoverReport report =
+      formats::recover(verb.input, core::followed(verb.output), verb.options,
+                       [&](std::uint64_t done, std::uint64_t total) {
+                         core::throw_if_interrupted("nothing is written");
+                         progress.advance(done, total);
+                       });
+  progress.finish();
   print(verb, report);
   if (!verb.common.json.empty()) {
     core::write_json_file(verb.common.json, to_json(verb, report));

@@ -34,7 +34,6 @@ struct SweepOptions {
 };
 
 constexpr std::size_t kShown = 10;  // rows of the table
-constexpr std::size_t kProgressSteps = 1000;
 
 // What a row has that others do not: the parameters of which the sweep has several values.
 std::vector<std::string> varied(const study::Json& rows) {
@@ -117,16 +116,14 @@ void run(const SweepOptions& options, filter::TermSet terms) {
     file.set_reference_picture("reference.exr");
   }
 
-  core::Progress progress("sweep", kProgressSteps, options.common.quiet);
+  core::Progress progress("sweep", options.common.quiet);
   study::Sweep sweep;
   sweep.rows = missing;
   sweep.passes = folder.passes();
   sweep.camera = folder.camera();
   sweep.max_memory = options.study.max_memory;
   sweep.on_progress = [&](std::uint64_t done, std::uint64_t total) {
-    progress.advance(static_cast<std::size_t>(kProgressSteps * static_cast<double>(done) /
-                                              static_cast<double>(total)),
-                     fmt::format("{} rows", file.json()["rows"].size()));
+    progress.advance(done, total, fmt::format("{} rows", file.json()["rows"].size()));
   };
   sweep.on_unfiltered = [&](const study::Metrics& metrics, const std::vector<Rgb>& picture) {
     if (file.has_unfiltered()) return;

@@ -38,9 +38,8 @@ struct TuneOptions {
 };
 
 constexpr const char* kRadii = "2px,2.8px,4px,5.7px,8px,11.3px,16px,22.6px,32px";
-constexpr std::size_t kShown = 8;  // rows of the table
-constexpr std::size_t kProgressSteps = 1000;
-constexpr double kCorrelated = 0.05;  // correlation of the parts' noise that is worth a note
+constexpr std::size_t kRowsShown = 8;  // rows of the table
+constexpr double kCorrelated = 0.05;   // correlation of the parts' noise that is worth a note
 
 using Rows = std::vector<const study::TuneRow*>;
 
@@ -75,7 +74,7 @@ void print(const study::Tuning& tuning, const study::Dump& dump) {
   const Rows rows = by_error(tuning);
   fmt::print("{:>10} {:>9} {:>10} {:>10} {:>10} {:>10}  parameters\n", "error", "+-", "bias^2",
              "variance", "neighbours", "sigmas off");
-  for (std::size_t k = 0; k < std::min(kShown, rows.size()); ++k) {
+  for (std::size_t k = 0; k < std::min(kRowsShown, rows.size()); ++k) {
     const study::TuneRow& row = *rows[k];
     fmt::print("{:>10.4g} {:>9.2g} {:>10.4g} {:>10.4g} {:>10.1f} {:>10.1f}  {}\n", row.error,
                row.standard_error, row.bias_sq, row.variance, row.neighbors, row.distance,
@@ -140,10 +139,9 @@ void run(const TuneOptions& options, filter::TermSet asked) {
   tune.max_memory = options.max_memory;
   check_files({options.input}, {options.common.json});
   print_notes(notes, options.common.quiet);
-  core::Progress progress("tune", kProgressSteps, options.common.quiet);
+  core::Progress progress("tune", options.common.quiet);
   tune.on_progress = [&progress](std::uint64_t done, std::uint64_t total) {
-    progress.advance(static_cast<std::size_t>(kProgressSteps * static_cast<double>(done) /
-                                              static_cast<double>(total)));
+    progress.advance(done, total);
   };
   const study::Tuning tuning = study::tune(dump, tune);
   progress.finish();

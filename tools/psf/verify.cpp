@@ -43,16 +43,13 @@ nlohmann::ordered_json to_json(const std::string& path, const formats::CheckRepo
 void run(const VerifyOptions& options) {
   const core::ThreadLimit threads(options.common.threads);
   check_files({options.input}, {options.common.json});
-  std::unique_ptr<core::Progress> progress;
+  core::Progress progress("verify", options.common.quiet);
   const formats::CheckReport report =
       formats::check(options.input, [&](std::uint64_t done, std::uint64_t total) {
         core::throw_if_interrupted("not all was checked");
-        if (!progress) {
-          progress = std::make_unique<core::Progress>("verify", total, options.common.quiet);
-        }
-        progress->advance(done);
+        progress.advance(done, total);
       });
-  if (progress) progress->finish();
+  progress.finish();
 
   for (const formats::Fault& fault : report.faults) fmt::print("{}\n", fault.text());
   if (!options.common.json.empty()) {

@@ -8,7 +8,7 @@
 namespace psf::filter {
 namespace {
 
-constexpr std::size_t kGrain = 4096;  // keys a range
+constexpr std::size_t kEntryGrain = 4096;  // keys a range
 // Parts of the hashes' range, each sorted for itself and small enough for the cache.
 constexpr std::size_t kPartBits = 8, kParts = std::size_t{1} << kPartBits;
 
@@ -25,9 +25,9 @@ std::size_t part_of(std::uint64_t hash) {
 std::vector<Entry> deal_out(std::span<const CellKey> keys, std::uint64_t mask,
                             std::array<std::size_t, kParts + 1>& begins) {
   std::vector<std::uint64_t> hashes(keys.size());
-  std::vector<std::array<std::size_t, kParts>> places(core::range_count(keys.size(), kGrain));
-  core::parallel_for(keys.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    auto& counts = places[begin / kGrain];
+  std::vector<std::array<std::size_t, kParts>> places(core::range_count(keys.size(), kEntryGrain));
+  core::parallel_for(keys.size(), kEntryGrain, [&](std::size_t begin, std::size_t end) {
+    auto& counts = places[begin / kEntryGrain];
     counts.fill(0);
     for (std::size_t k = begin; k < end; ++k) {
       hashes[k] = keys[k].hash() & mask;
@@ -45,10 +45,10 @@ std::vector<Entry> deal_out(std::span<const CellKey> keys, std::uint64_t mask,
   }
   begins[kParts] = place;
   std::vector<Entry> entries(keys.size());
-  core::parallel_for(keys.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  core::parallel_for(keys.size(), kEntryGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      entries[places[begin / kGrain][part_of(hashes[k])]++] = {hashes[k],
-                                                               static_cast<std::uint32_t>(k)};
+      entries[places[begin / kEntryGrain][part_of(hashes[k])]++] = {hashes[k],
+                                                                    static_cast<std::uint32_t>(k)};
     }
   });
   return entries;

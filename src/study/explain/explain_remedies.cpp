@@ -28,10 +28,6 @@ constexpr std::array kDifferences = {1.0f, 0.5f, 0.2f, 0.1f, 0.05f, 0.02f, 0.01f
 constexpr std::array kLobes = {4.0f, 2.0f, 1.0f, 0.5f, 0.25f};
 constexpr std::array kOn = {1.0f};
 
-Colour wide(const Vec3& v) {
-  return {double{v.x}, double{v.y}, double{v.z}};
-}
-
 // The thresholds to try for a term: those that are stricter than its threshold in use, if any.
 // Empty where the file lacks the term's channel.
 std::span<const float> ladder(const Explanation& e, std::size_t term) {

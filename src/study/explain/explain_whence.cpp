@@ -13,10 +13,6 @@
 namespace psf::study {
 namespace {
 
-Colour wide(const Vec3& v) {
-  return {double{v.x}, double{v.y}, double{v.z}};
-}
-
 bool is_counted(const ExplainedPath& path) {
   return path.fate != PathFate::left_out && path.fate != PathFate::overflowed;
 }

@@ -12,6 +12,10 @@
 namespace psf::study {
 
 using Colour = Imath::V3d;  // linear, Rec. 709 primaries
+
+[[nodiscard]] inline Colour wide(const Vec3& v) {
+  return {double{v.x}, double{v.y}, double{v.z}};
+}
 [[nodiscard]] double luminance(const Colour& colour);
 
 // Sums over the N paths that are part of the pixel.

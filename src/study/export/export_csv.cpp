@@ -17,7 +17,7 @@
 namespace psf::study {
 namespace {
 
-constexpr std::size_t kGrain = 2048;  // rows made at a time by a thread
+constexpr std::size_t kRowGrain = 2048;  // rows made at a time by a thread
 
 std::string quoted(const std::string& name) {
   if (name.find_first_of(",\"") == std::string::npos) return name;
@@ -106,7 +106,7 @@ ExportOutcome export_csv(const formats::Reader& reader, const ExportSelection& s
   }
   file.write(line + "\n");
   const std::size_t batch = records.batch(bytes);
-  std::vector<fmt::memory_buffer> texts(core::range_count(batch, kGrain));
+  std::vector<fmt::memory_buffer> texts(core::range_count(batch, kRowGrain));
   for (std::uint64_t first = 0; first < records.size(); first += batch) {
     core::throw_if_interrupted("nothing was exported");
     const auto count =
@@ -118,8 +118,8 @@ ExportOutcome export_csv(const formats::Reader& reader, const ExportSelection& s
         records.read(column.place, first, count, column.stored);
       }
     }
-    core::parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
-      fmt::memory_buffer& text = texts[begin / kGrain];
+    core::parallel_for(count, kRowGrain, [&](std::size_t begin, std::size_t end) {
+      fmt::memory_buffer& text = texts[begin / kRowGrain];
       text.clear();
       for (std::size_t i = begin; i < end; ++i) {
         fmt::format_to(std::back_inserter(text), "{},{}", records.record(first + i),
@@ -128,7 +128,7 @@ ExportOutcome export_csv(const formats::Reader& reader, const ExportSelection& s
         text.push_back('\n');
       }
     });
-    for (std::size_t k = 0; k < core::range_count(count, kGrain); ++k) {
+    for (std::size_t k = 0; k < core::range_count(count, kRowGrain); ++k) {
       file.write(std::string_view(texts[k].data(), texts[k].size()));
     }
     if (progress) progress(first + count, records.size());

@@ -18,8 +18,8 @@
 namespace psf::study {
 namespace {
 
-constexpr std::size_t kGrain = 4096;    // points made at a time by a thread
-constexpr std::uint8_t kHasVertex = 1;  // bit of the channel `flags`
+constexpr std::size_t kPointGrain = 4096;  // points made at a time by a thread
+constexpr std::uint8_t kHasVertex = 1;     // bit of the channel `flags`
 constexpr float kMiddleGrey = 0.18f;
 
 // A channel written besides, as floats or doubles.
@@ -119,7 +119,7 @@ class Cloud {
       }
       const std::size_t size = row_bytes();
       rows.resize(points_.size() * size);
-      core::parallel_for(points_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      core::parallel_for(points_.size(), kPointGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) put(rows.data() + k * size, points_[k]);
       });
       file.write(rows);

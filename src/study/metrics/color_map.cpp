@@ -11,8 +11,8 @@ namespace psf::study {
 namespace {
 
 // Every 16th part of each map, 0xRRGGBB; between them the maps are straight enough.
-constexpr int kParts = 16;
-constexpr std::uint32_t kColors[][kParts + 1] = {
+constexpr int kSteps = 16;
+constexpr std::uint32_t kColors[][kSteps + 1] = {
     {0x000004, 0x0b0724, 0x210c4a, 0x3d0965, 0x57106e, 0x71196e, 0x8a226a, 0xa32c61, 0xbc3754,
      0xd24644, 0xe45a31, 0xf1731d, 0xf98e09, 0xfcac11, 0xf9cb35, 0xf2ea69, 0xfcffa4},
     {0x000004, 0x0a0822, 0x1d1147, 0x36106b, 0x51127c, 0x6a1c81, 0x832681, 0x9c2e7f, 0xb73779,
@@ -33,8 +33,8 @@ std::array<std::uint8_t, 3> mapped_color(std::string_view map, double value) {
     throw Error(ErrorCode::usage, std::string(map) + ": no colour map");
   }
   const auto& colors = kColors[name - std::begin(kColorMaps)];
-  const double place = std::clamp(value, 0.0, 1.0) * kParts;
-  const int part = std::min(static_cast<int>(place), kParts - 1);
+  const double place = std::clamp(value, 0.0, 1.0) * kSteps;
+  const int part = std::min(static_cast<int>(place), kSteps - 1);
   std::array<std::uint8_t, 3> color{};
   for (unsigned k = 0; k < 3; ++k) {
     const auto at = [&](int knot) { return double((colors[knot] >> (16 - 8 * k)) & 0xff); };

@@ -10,16 +10,16 @@
 namespace psf::study {
 namespace {
 
-constexpr std::size_t kGrain = 8192;  // values a partial sum
+constexpr std::size_t kValueGrain = 8192;  // values a partial sum
 
 // The partial sums are of fixed ranges and added in order: the same for any number of threads.
 template <class Term>
 double sum(std::size_t count, const Term& term) {
-  std::vector<double> parts(core::range_count(count, kGrain));
-  core::parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
+  std::vector<double> parts(core::range_count(count, kValueGrain));
+  core::parallel_for(count, kValueGrain, [&](std::size_t begin, std::size_t end) {
     double part = 0;
     for (std::size_t i = begin; i < end; ++i) part += term(i);
-    parts[begin / kGrain] = part;
+    parts[begin / kValueGrain] = part;
   });
   double total = 0;
   for (const double part : parts) total += part;

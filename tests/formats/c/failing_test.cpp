@@ -68,18 +68,18 @@ using test::CFile;
 
 namespace {
 
-struct Outcome {
+struct Written {
   std::uint64_t committed = 0;  // as the header says
   std::string error;
 };
 
 // Passes [first, first + 3), closed.
-Outcome write_passes(const std::string& path, std::size_t first) {
+Written write_passes(const std::string& path, std::size_t first) {
   const CFile file(first == 0 ? test::create_golden(path, true) : test::resume_golden(path, true));
   for (std::size_t pass = first; pass < first + 3; ++pass)
     test::write_golden_pass(file.get(), pass);
   pvb_close(file.get());
-  Outcome outcome = {file.info().records, file.error()};
+  Written outcome = {file.info().records, file.error()};
   if (outcome.error.empty()) return outcome;
   // It sticks, even though the system works again.
   CHECK(pvb_close(file.get()) == PVB_IO);
@@ -88,7 +88,7 @@ Outcome write_passes(const std::string& path, std::size_t first) {
   return outcome;
 }
 
-void check_left_behind(const std::string& path, const Outcome& outcome) {
+void check_left_behind(const std::string& path, const Written& outcome) {
   CHECK_FALSE(std::filesystem::exists(path + ".partial"));
   if (!std::filesystem::exists(path)) {
     CHECK(outcome.committed == 0);
@@ -123,7 +123,7 @@ TEST_CASE("C: whichever write, sync or rename fails, the last commit is readable
         start();
         tear = torn;
         calls_left = n;
-        Outcome outcome = write_passes(path, first);
+        Written outcome = write_passes(path, first);
         calls_left = -1;
         CAPTURE(n, outcome.error);
         REQUIRE(outcome.error.find("w.pvb: cannot ") != std::string::npos);
@@ -162,7 +162,7 @@ TEST_CASE("C: a limit on file sizes is an error with a remedy, and the last comm
     std::filesystem::remove(path);
     const rlimit small{limit, old.rlim_max};
     REQUIRE(::setrlimit(RLIMIT_FSIZE, &small) == 0);
-    const Outcome outcome = write_passes(path, 0);
+    const Written outcome = write_passes(path, 0);
     ::setrlimit(RLIMIT_FSIZE, &old);
     CHECK(outcome.error.find("ulimit -f") != std::string::npos);
     check_left_behind(path, outcome);

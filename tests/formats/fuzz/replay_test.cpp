@@ -1,12 +1,12 @@
 // Every file of the corpus, and every input that ever crashed, keeps all promises.
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
 
 #include "catch.h"
+#include "read_text.h"
 #include "targets.h"
 
 using namespace psf;
@@ -22,15 +22,10 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder)
   return files;
 }
 
-std::string read(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 void replay(const fuzz::Target& target, const std::filesystem::path& folder) {
   for (const auto& file : files_of(folder)) {
     CAPTURE(file.string());
-    const std::string bytes = read(file);
+    const std::string bytes = psf::tests::read_text(file);
     CHECK_NOTHROW(target.run(std::as_bytes(std::span(bytes))));
   }
 }
