@@ -6,8 +6,8 @@
 #include <random>
 
 #include "filter/radius.h"
-#include "formats/metadata.h"
-#include "formats/writer.h"
+#include "formats/layout/metadata.h"
+#include "formats/write/writer.h"
 #include "study/theory.h"
 
 namespace psf::study {

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/seconds.h"
 #include "filter/blocks.h"
-#include "study/filter_dump.h"
+#include "run/filter_dump.h"
 #include "study/variants.h"
 
 namespace psf::study {
@@ -20,10 +20,10 @@ using core::seconds_since;
 
 constexpr std::uint64_t kMostPictures = std::uint64_t{1} << 30;  // bytes, where no limit is given
 
-void check_replicates(const std::vector<Dump>& dumps, std::uint64_t passes) {
-  const Dump& first = dumps.front();
+void check_replicates(const std::vector<run::Dump>& dumps, std::uint64_t passes) {
+  const run::Dump& first = dumps.front();
   for (std::size_t r = 0; r < dumps.size(); ++r) {
-    const Dump& dump = dumps[r];
+    const run::Dump& dump = dumps[r];
     const std::string& path = dump.reader().path();
     if (dump.pass_bounds().size() - 1 < passes) {
       throw Error(ErrorCode::usage,
@@ -51,12 +51,12 @@ void check_replicates(const std::vector<Dump>& dumps, std::uint64_t passes) {
 // Pictures of one set at one n, by replicate, and what is averaged of them.
 struct Cell {
   std::vector<std::vector<Rgb>> pictures;
-  Metrics sums;
+  metrics::Metrics sums;
   double neighbors = 0, radius = 0;
 
-  void add(const Reference& reference, std::vector<Rgb> picture) {
-    const Metrics metrics = reference.measure(picture);
-    for (std::size_t m = 0; m < kMetricCount; ++m) {
+  void add(const metrics::Reference& reference, std::vector<Rgb> picture) {
+    const metrics::Metrics metrics = reference.measure(picture);
+    for (std::size_t m = 0; m < metrics::kMetricCount; ++m) {
       const double before = pictures.empty() ? 0 : sums.values[m];
       sums.values[m] = before + metrics.values[m];
     }
@@ -68,8 +68,8 @@ struct Cell {
 
 class Study {
  public:
-  Study(std::span<const std::string> paths, const Reference& reference,
-        std::span<const Rgb> reference_picture, const Convergence& convergence)
+  Study(std::span<const std::string> paths, const metrics::Reference& reference,
+        std::span<const Rgb> reference_picture, const ConvergeRequest& convergence)
       : reference_(reference), picture_(reference_picture), c_(convergence) {
     for (const std::string& path : paths) dumps_.emplace_back(path);
     check_replicates(dumps_, c_.n.back());
@@ -89,8 +89,8 @@ class Study {
   }
 
  private:
-  [[nodiscard]] ManyRun run_of(const Traversal& traversal) const {
-    ManyRun run = study::run_of(traversal);
+  [[nodiscard]] run::ManyRequest run_of(const Traversal& traversal) const {
+    run::ManyRequest run = study::run_of(traversal);
     run.passes.last = static_cast<std::size_t>(c_.n.back());
     run.snapshots = c_.n;
     run.max_memory = c_.max_memory;
@@ -102,7 +102,7 @@ class Study {
         dumps_.size() * c_.n.size() * picture_.size() * sizeof(Rgb);  // bytes per set
     const auto fitting = static_cast<std::size_t>(c_.max_memory.value_or(kMostPictures) / pictures);
     const std::size_t filtering =
-        radii_at_once(dumps_.front(), run_of({&group, 0, group.radii.size()}));
+        run::radii_at_once(dumps_.front(), run_of({&group, 0, group.radii.size()}));
     return std::clamp<std::size_t>(fitting, 1, filtering);
   }
 
@@ -112,10 +112,10 @@ class Study {
     const std::size_t rows = count + (with_unfiltered ? 1 : 0);
     std::vector<std::vector<Cell>> cells(rows, std::vector<Cell>(c_.n.size()));
     for (std::size_t r = 0; r < dumps_.size(); ++r) {
-      ManyRun run = run_of(traversal);
+      run::ManyRequest run = run_of(traversal);
       std::size_t place = 0;
-      run.on_snapshot = [&](std::uint64_t n, const ManyOutcome& outcome) {
-        const ManyPictures& pictures = outcome.pictures[c_.camera];
+      run.on_snapshot = [&](std::uint64_t n, const run::ManyResult& outcome) {
+        const run::ManyPictures& pictures = outcome.pictures[c_.camera];
         for (std::size_t k = 0; k < rows; ++k) {
           Cell& cell = cells[k][place];
           const bool filtered = k < count;
@@ -131,7 +131,7 @@ class Study {
         ++place;
       };
       run.on_progress = [this](std::uint64_t done, std::uint64_t total) { progress(done, total); };
-      static_cast<void>(filter_many(dumps_[r], run));
+      static_cast<void>(run::filter_many(dumps_[r], run));
       ++done_;
     }
     for (std::size_t k = 0; k < rows; ++k) {
@@ -161,9 +161,9 @@ class Study {
   void measure_time(std::size_t set) {
     const filter::Parameters& parameters = c_.sets[set];
     const std::uint64_t all = c_.n.back();
-    const Dump& dump = dumps_.front();
+    const run::Dump& dump = dumps_.front();
     std::vector<ConvergePoint>& points = series_[set + 1].points;
-    FilterRun run;
+    run::FilterRequest run;
     run.parameters = parameters;
     run.passes.last = static_cast<std::size_t>(all);
     run.max_memory = c_.max_memory;
@@ -175,7 +175,7 @@ class Study {
         run.snapshots.push_back(c_.n[t]);
         places.push_back(t);
       } else {
-        FilterRun part = run;
+        run::FilterRequest part = run;
         part.passes.last = static_cast<std::size_t>(c_.n[t]);
         part.snapshots.clear();
         part.on_progress = nullptr;
@@ -184,15 +184,15 @@ class Study {
     }
     std::size_t place = 0;
     const auto start = Clock::now();
-    run.on_snapshot = [&](std::uint64_t, std::span<const CameraPictures>) {
+    run.on_snapshot = [&](std::uint64_t, std::span<const run::CameraPictures>) {
       points[places[place++]].filter_seconds = seconds_since(start);
     };
-    static_cast<void>(filter_dump(dump, run));
+    static_cast<void>(run::filter_dump(dump, run));
     ++done_;
   }
-  [[nodiscard]] double seconds_of(const FilterRun& run) const {
+  [[nodiscard]] double seconds_of(const run::FilterRequest& run) const {
     const auto start = Clock::now();
-    static_cast<void>(filter_dump(dumps_.front(), run));
+    static_cast<void>(run::filter_dump(dumps_.front(), run));
     return seconds_since(start);
   }
 
@@ -200,10 +200,10 @@ class Study {
     if (c_.on_progress) c_.on_progress(done_ * total + done, runs_ * total);
   }
 
-  const Reference& reference_;
+  const metrics::Reference& reference_;
   std::span<const Rgb> picture_;
-  const Convergence& c_;
-  std::vector<Dump> dumps_;
+  const ConvergeRequest& c_;
+  std::vector<run::Dump> dumps_;
   std::vector<ConvergeSeries> series_;
   std::uint64_t runs_ = 0, done_ = 0;
 };
@@ -217,9 +217,10 @@ std::vector<std::uint64_t> powers_up_to(std::uint64_t passes) {
   return n;
 }
 
-std::vector<ConvergeSeries> converge(std::span<const std::string> dumps, const Reference& reference,
+std::vector<ConvergeSeries> converge(std::span<const std::string> dumps,
+                                     const metrics::Reference& reference,
                                      std::span<const Rgb> reference_picture,
-                                     const Convergence& convergence) {
+                                     const ConvergeRequest& convergence) {
   return Study(dumps, reference, reference_picture, convergence).run();
 }
 

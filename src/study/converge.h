@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "filter/parameters.h"
-#include "study/dump.h"
-#include "study/metrics/metrics.h"
-#include "study/metrics/reference.h"
+#include "metrics/metrics.h"
+#include "metrics/reference.h"
+#include "run/dump.h"
 #include "study/replicates.h"
 #include "study/theory.h"
 
@@ -21,8 +21,8 @@ namespace psf::study {
 
 // The results of one set of parameters after n passes.
 struct ConvergePoint {
-  std::uint64_t n = 0;  // passes
-  Metrics metrics;      // means over the replicates
+  std::uint64_t n = 0;       // passes
+  metrics::Metrics metrics;  // means over the replicates
   ErrorParts parts;
   Theory theory;         // for the first replicate; all 0 without filter
   double neighbors = 0;  // M(n): mean over the queries of all blocks so far, and the replicates
@@ -35,7 +35,7 @@ struct ConvergeSeries {
   std::vector<ConvergePoint> points;             // one for each n
 };
 
-struct Convergence {
+struct ConvergeRequest {
   std::span<const filter::Parameters> sets;
   std::vector<std::uint64_t> n;  // numbers of passes, ascending; every dump has at least the last
   std::size_t camera = 0;
@@ -59,9 +59,9 @@ struct Convergence {
 // different cameras or the same seed, Error{usage} where one has too few passes, and what
 // filter_many() throws.
 [[nodiscard]] std::vector<ConvergeSeries> converge(std::span<const std::string> dumps,
-                                                   const Reference& reference,
+                                                   const metrics::Reference& reference,
                                                    std::span<const Rgb> reference_picture,
-                                                   const Convergence& convergence);
+                                                   const ConvergeRequest& convergence);
 
 // The slope d log(value) / d log(n) between two points; NaN where a value is not positive.
 [[nodiscard]] double local_slope(double n0, double value0, double n1, double value1);

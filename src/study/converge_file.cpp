@@ -7,7 +7,7 @@
 namespace psf::study {
 namespace {
 
-constexpr Metric kError = Metric::rel_mse;
+constexpr metrics::Metric kError = metrics::Metric::rel_mse;
 
 std::string id_of(std::size_t series) {
   return series == 0 ? "unfiltered" : fmt::format("{:04}", series);
@@ -52,7 +52,7 @@ Json to_json(const ConvergeReport& report, std::size_t series, std::size_t place
   const ConvergePoint& point = report.series[series].points[place];
   const bool filtered = series > 0;
   return {{"n", point.n},
-          {"metrics", to_json(point.metrics, report.measured)},
+          {"metrics", study::to_json(point.metrics, report.measured)},
           {"neighbors", filtered ? Json(point.neighbors) : Json(nullptr)},
           {"radius_px", filtered ? number_or_null(point.radius) : Json(nullptr)},
           {"mse", number_or_null(point.parts.error)},
@@ -118,9 +118,10 @@ Json to_json(const ConvergeReport& report) {
     const ConvergeSeries& one = report.series[k];
     Json points = Json::array();
     for (std::size_t t = 0; t < one.points.size(); ++t) points.push_back(to_json(report, k, t));
-    series.push_back({{"id", id_of(k)},
-                      {"parameters", one.parameters ? to_json(*one.parameters) : Json(nullptr)},
-                      {"points", points}});
+    series.push_back(
+        {{"id", id_of(k)},
+         {"parameters", one.parameters ? study::to_json(*one.parameters) : Json(nullptr)},
+         {"points", points}});
   }
   for (const SpeedUp& gain : report.speed_ups) {
     gains.push_back({{"id", id_of(gain.series)},

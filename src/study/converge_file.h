@@ -45,7 +45,7 @@ struct ConvergeReport {
   std::string version;
   std::vector<Json> inputs;  // describe_input() of each replicate
   Json reference, metrics;
-  std::span<const Metric> measured;
+  std::span<const metrics::Metric> measured;
   std::vector<ConvergeSeries> series;
   std::optional<RenderTime> time;
   std::vector<SpeedUp> speed_ups;

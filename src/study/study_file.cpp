@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/json_text.h"
 #include "filter/parameters_text.h"
-#include "formats/crc.h"
+#include "formats/layout/crc.h"
 
 namespace psf::study {
 
@@ -16,9 +16,9 @@ Json number_or_null(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-Json describe_input(const Dump& dump, const PassSelection& passes, std::size_t camera) {
+Json describe_input(const run::Dump& dump, const run::PassSelection& passes, std::size_t camera) {
   const formats::Metadata& metadata = dump.metadata();
-  const std::size_t last = last_pass(dump, passes);
+  const std::size_t last = run::last_pass(dump, passes);
   const filter::CameraView& view = dump.cameras()[camera];
   return {{"file", dump.reader().path()},
           {"uuid", dump.reader().uuid()},
@@ -40,10 +40,11 @@ Json describe_reference(const std::string& file, std::span<const Rgb> picture) {
           {"picture", nullptr}};
 }
 
-Json describe_metrics(std::span<const Metric> metrics, const MetricOptions& options) {
+Json describe_metrics(std::span<const metrics::Metric> metrics,
+                      const metrics::MetricOptions& options) {
   Json list = Json::array();
-  for (const Metric metric : metrics) {
-    Json one = {{"name", name(metric)}, {"lower_is_better", lower_is_better(metric)}};
+  for (const metrics::Metric metric : metrics) {
+    Json one = {{"name", name(metric)}, {"lower_is_better", metrics::lower_is_better(metric)}};
     const std::string depends_on = settings(metric, options);
     if (!depends_on.empty()) one["settings"] = depends_on;
     list.push_back(one);
@@ -51,9 +52,9 @@ Json describe_metrics(std::span<const Metric> metrics, const MetricOptions& opti
   return list;
 }
 
-Json to_json(const Metrics& metrics, std::span<const Metric> asked) {
+Json to_json(const metrics::Metrics& metrics, std::span<const metrics::Metric> asked) {
   Json json = Json::object();
-  for (const Metric metric : asked) json[name(metric)] = number_or_null(metrics[metric]);
+  for (const metrics::Metric metric : asked) json[name(metric)] = number_or_null(metrics[metric]);
   return json;
 }
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "filter/parameters.h"
-#include "study/dump.h"
-#include "study/metrics/metrics.h"
-#include "study/passes.h"
+#include "metrics/metrics.h"
+#include "run/dump.h"
+#include "run/passes.h"
 
 namespace psf::study {
 
@@ -23,14 +23,15 @@ inline constexpr int kStudyFormat = 1;  // raised where readers have to know of 
 [[nodiscard]] Json number_or_null(double value);
 
 // Describes the dump, the passes and the camera of a study.
-[[nodiscard]] Json describe_input(const Dump& dump, const PassSelection& passes,
+[[nodiscard]] Json describe_input(const run::Dump& dump, const run::PassSelection& passes,
                                   std::size_t camera);
 // Describes a reference. `file`: the name that the user gave. A checksum tells pictures apart.
 [[nodiscard]] Json describe_reference(const std::string& file, std::span<const Rgb> picture);
 // Describes each metric by its name, its settings, and whether lower is better.
-[[nodiscard]] Json describe_metrics(std::span<const Metric> metrics, const MetricOptions& options);
+[[nodiscard]] Json describe_metrics(std::span<const metrics::Metric> metrics,
+                                    const metrics::MetricOptions& options);
 // The values of the metrics `asked`, by name.
-[[nodiscard]] Json to_json(const Metrics& metrics, std::span<const Metric> asked);
+[[nodiscard]] Json to_json(const metrics::Metrics& metrics, std::span<const metrics::Metric> asked);
 // Each parameter as text by the name of its option, as psf filter takes it.
 [[nodiscard]] Json to_json(const filter::Parameters& parameters);
 

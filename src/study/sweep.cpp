@@ -9,14 +9,14 @@ namespace {
 
 class Sweeper {
  public:
-  Sweeper(const Dump& dump, const Reference& reference, const Sweep& sweep)
+  Sweeper(const run::Dump& dump, const metrics::Reference& reference, const SweepRequest& sweep)
       : dump_(dump), reference_(reference), s_(sweep), groups_(group_variants(sweep.rows)) {}
 
   void run() {
     const std::vector<std::uint64_t>& bounds = dump_.pass_bounds();
-    paths_ = bounds[last_pass(dump_, s_.passes)] - bounds[s_.passes.first];
+    paths_ = bounds[run::last_pass(dump_, s_.passes)] - bounds[s_.passes.first];
     traversals_ = split(groups_, [this](const VariantGroup& group) {
-      return radii_at_once(dump_, run_of({&group, 0, group.radii.size()}));
+      return run::radii_at_once(dump_, run_of({&group, 0, group.radii.size()}));
     });
     for (const Traversal& traversal : traversals_) {
       traverse(traversal);
@@ -26,20 +26,20 @@ class Sweeper {
   }
 
  private:
-  [[nodiscard]] ManyRun run_of(const Traversal& traversal) const {
-    ManyRun run = study::run_of(traversal);
+  [[nodiscard]] run::ManyRequest run_of(const Traversal& traversal) const {
+    run::ManyRequest run = study::run_of(traversal);
     run.passes = s_.passes;
     run.max_memory = s_.max_memory;
     return run;
   }
 
   void traverse(const Traversal& traversal) {
-    ManyRun run = run_of(traversal);
+    run::ManyRequest run = run_of(traversal);
     run.on_progress = [this](std::uint64_t done, std::uint64_t) {
       if (s_.on_progress) s_.on_progress(done_ * paths_ + done, traversals_.size() * paths_);
     };
-    const ManyOutcome outcome = filter_many(dump_, run);
-    const ManyPictures& pictures = outcome.pictures[s_.camera];
+    const run::ManyResult outcome = run::filter_many(dump_, run);
+    const run::ManyPictures& pictures = outcome.pictures[s_.camera];
     if (done_ == 0 && s_.on_unfiltered) {
       const std::vector<Rgb> unfiltered = pictures.unfiltered();
       s_.on_unfiltered(reference_.measure(unfiltered), unfiltered);
@@ -62,9 +62,9 @@ class Sweeper {
     }
   }
 
-  const Dump& dump_;
-  const Reference& reference_;
-  const Sweep& s_;
+  const run::Dump& dump_;
+  const metrics::Reference& reference_;
+  const SweepRequest& s_;
   std::vector<VariantGroup> groups_;
   std::vector<Traversal> traversals_;
   std::uint64_t paths_ = 0, done_ = 0;  // number of paths in a traversal; of traversals done
@@ -72,7 +72,8 @@ class Sweeper {
 
 }  // namespace
 
-void run_sweep(const Dump& dump, const Reference& reference, const Sweep& sweep) {
+void run_sweep(const run::Dump& dump, const metrics::Reference& reference,
+               const SweepRequest& sweep) {
   Sweeper(dump, reference, sweep).run();
 }
 

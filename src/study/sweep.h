@@ -11,17 +11,17 @@
 
 #include "core/vec.h"
 #include "filter/parameters.h"
-#include "study/dump.h"
-#include "study/metrics/metrics.h"
-#include "study/metrics/reference.h"
-#include "study/passes.h"
+#include "metrics/metrics.h"
+#include "metrics/reference.h"
+#include "run/dump.h"
+#include "run/passes.h"
 
 namespace psf::study {
 
 // The results of one row of a sweep.
 struct SweepRow {
   filter::Parameters parameters;
-  Metrics metrics;
+  metrics::Metrics metrics;
   double neighbors = 0;                      // mean number per query
   double first_radius = 0, last_radius = 0;  // means in the first and the last block, pixels
   std::uint64_t orphans = 0, left_out = 0;   // numbers of records in all blocks
@@ -29,9 +29,9 @@ struct SweepRow {
   std::size_t shared = 1;
 };
 
-struct Sweep {
+struct SweepRequest {
   std::span<const filter::Parameters> rows;
-  PassSelection passes;
+  run::PassSelection passes;
   std::size_t camera = 0;
   std::optional<std::uint64_t> max_memory;  // bytes
   // Called for each row when it is done, with its picture.
@@ -39,13 +39,14 @@ struct Sweep {
   // Called after the rows of a traversal, so that results can be saved.
   std::function<void()> on_traversal;
   // Called once, before the first row, with the picture of the same paths without filter.
-  std::function<void(const Metrics&, const std::vector<Rgb>& picture)> on_unfiltered;
+  std::function<void(const metrics::Metrics&, const std::vector<Rgb>& picture)> on_unfiltered;
   std::function<void(std::uint64_t done, std::uint64_t total)>
       on_progress;  // counts paths over all traversals
 };
 
 // Runs a sweep. Rows that differ only in r0 and delta share a traversal, as many as the memory
 // allows. Throws what filter_many() throws.
-void run_sweep(const Dump& dump, const Reference& reference, const Sweep& sweep);
+void run_sweep(const run::Dump& dump, const metrics::Reference& reference,
+               const SweepRequest& sweep);
 
 }  // namespace psf::study

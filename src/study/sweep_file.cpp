@@ -63,7 +63,7 @@ std::string SweepFile::id(std::size_t rows) {
   return fmt::format("{:04}", rows + 1);
 }
 
-void SweepFile::add(const SweepRow& row, std::span<const Metric> metrics,
+void SweepFile::add(const SweepRow& row, std::span<const metrics::Metric> metrics,
                     const std::string& picture) {
   json_["rows"].push_back({{"id", next_id()},
                            {"parameters", to_json(row.parameters)},
@@ -79,7 +79,8 @@ void SweepFile::add(const SweepRow& row, std::span<const Metric> metrics,
                            {"picture", picture_or_null(picture)}});
 }
 
-void SweepFile::set_unfiltered(const Metrics& values, std::span<const Metric> metrics,
+void SweepFile::set_unfiltered(const metrics::Metrics& values,
+                               std::span<const metrics::Metric> metrics,
                                const std::string& picture) {
   json_["unfiltered"] = {{"metrics", to_json(values, metrics)},
                          {"picture", picture_or_null(picture)}};

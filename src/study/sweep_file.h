@@ -28,8 +28,9 @@ class SweepFile {
   [[nodiscard]] static std::string id(std::size_t rows);
 
   // Adds a row. `picture`: a file name in the folder, or empty.
-  void add(const SweepRow& row, std::span<const Metric> metrics, const std::string& picture);
-  void set_unfiltered(const Metrics& values, std::span<const Metric> metrics,
+  void add(const SweepRow& row, std::span<const metrics::Metric> metrics,
+           const std::string& picture);
+  void set_unfiltered(const metrics::Metrics& values, std::span<const metrics::Metric> metrics,
                       const std::string& picture);
   void set_reference_picture(const std::string& picture);
 

@@ -7,7 +7,7 @@
 
 #include "filter/blocks.h"
 #include "filter/radius.h"
-#include "study/passes.h"
+#include "run/passes.h"
 
 namespace psf::study {
 
@@ -17,7 +17,7 @@ double share_right(double s) {
   return 0.5 + (s * std::sqrt(1 - s * s) + std::asin(s)) / std::numbers::pi;
 }
 
-Theory theory(const Dump& dump, const filter::Parameters& parameters, std::uint64_t n) {
+Theory theory(const run::Dump& dump, const filter::Parameters& parameters, std::uint64_t n) {
   const filter::Blocks blocks(parameters.block, dump.pass_bounds(), 0, n);
   struct Part {
     double share, r;  // a block's share of the paths, and its radius

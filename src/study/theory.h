@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "filter/parameters.h"
-#include "study/dump.h"
+#include "run/dump.h"
 
 namespace psf::study {
 
@@ -17,7 +17,7 @@ struct Theory {
 };
 
 // The prediction for the first n passes of the dump, in the blocks of a run over these passes.
-[[nodiscard]] Theory theory(const Dump& dump, const filter::Parameters& parameters,
+[[nodiscard]] Theory theory(const run::Dump& dump, const filter::Parameters& parameters,
                             std::uint64_t n);
 
 // The share of a unit disk around 0 that lies right of the line x = -s.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "study/median_around.h"
+#include "run/median_around.h"
 #include "study/variants.h"
 
 namespace psf::study {
@@ -60,7 +60,7 @@ class Tiles {
 
 class Tuner {
  public:
-  Tuner(const Dump& dump, const Tune& t) : dump_(dump), t_(t) {
+  Tuner(const run::Dump& dump, const TuneRequest& t) : dump_(dump), t_(t) {
     const filter::CameraView& camera = dump.cameras()[t.camera];
     width_ = camera.width;
     height_ = camera.height;
@@ -71,20 +71,20 @@ class Tuner {
     tuning_.has_independent_paths = dump.metadata().sampler == "independent";
   }
 
-  Tuning run() {
+  TuneResult run() {
     for (const filter::Parameters& set : t_.sets) {
       if (blocks_of(set).count() < kParts) parts_ = kFewParts;
     }
     tuning_.parts = parts_;
     const std::vector<VariantGroup> groups = group_variants(t_.sets);
     traversals_ = split(groups, [this](const VariantGroup& group) {
-      return radii_at_once(dump_, run_of({&group, 0, group.radii.size()}));
+      return run::radii_at_once(dump_, run_of({&group, 0, group.radii.size()}));
     });
     for (const Traversal& traversal : traversals_) {
       traverse(traversal);
       ++done_;
     }
-    tuning_.noise = noise_shares(dump_, t_.passes, t_.epsilon, t_.sets[0].sources)[t_.camera];
+    tuning_.noise = run::noise_shares(dump_, t_.passes, t_.epsilon, t_.sets[0].sources)[t_.camera];
     ++done_;
     report_progress(0, blocks_of(t_.sets[0]).all().size());
     choose();
@@ -92,8 +92,8 @@ class Tuner {
   }
 
  private:
-  [[nodiscard]] ManyRun run_of(const Traversal& traversal) const {
-    ManyRun run = study::run_of(traversal);
+  [[nodiscard]] run::ManyRequest run_of(const Traversal& traversal) const {
+    run::ManyRequest run = study::run_of(traversal);
     run.passes = t_.passes;
     run.max_memory = t_.max_memory;
     run.parts = parts_;
@@ -101,7 +101,8 @@ class Tuner {
   }
 
   [[nodiscard]] filter::Blocks blocks_of(const filter::Parameters& parameters) const {
-    return {parameters.block, dump_.pass_bounds(), t_.passes.first, last_pass(dump_, t_.passes)};
+    return {parameters.block, dump_.pass_bounds(), t_.passes.first,
+            run::last_pass(dump_, t_.passes)};
   }
 
   // `done` of the paths of one reading: there is one for each traversal, and one for the noise.
@@ -111,11 +112,11 @@ class Tuner {
 
   void traverse(const Traversal& traversal) {
     const VariantGroup& group = *traversal.group;
-    ManyRun run = run_of(traversal);
+    run::ManyRequest run = run_of(traversal);
     run.on_progress = [this](std::uint64_t done, std::uint64_t total) {
       report_progress(done, total);
     };
-    const ManyOutcome outcome = filter_many(dump_, run);
+    const run::ManyResult outcome = run::filter_many(dump_, run);
     const auto of_parts = [&](const auto& picture_of) {
       Parts parts;
       for (std::size_t part = 0; part < parts_; ++part) {
@@ -124,15 +125,15 @@ class Tuner {
       return parts;
     };
     const Parts unfiltered =
-        of_parts([](const ManyPictures& pictures) { return pictures.unfiltered(); });
-    const Parts u = of_parts([](const ManyPictures& pictures) { return pictures.u(); });
+        of_parts([](const run::ManyPictures& pictures) { return pictures.unfiltered(); });
+    const Parts u = of_parts([](const run::ManyPictures& pictures) { return pictures.u(); });
     set_shares(group.parameters);
     if (done_ == 0) {
       guess(unfiltered);
       measure_unfiltered(unfiltered, u);
     }
     const auto filtered = [&](std::size_t k) {
-      return of_parts([k](const ManyPictures& pictures) { return pictures.filtered(k); });
+      return of_parts([k](const run::ManyPictures& pictures) { return pictures.filtered(k); });
     };
     std::size_t best = 0;
     for (std::size_t k = 0; k < traversal.count; ++k) {
@@ -175,7 +176,7 @@ class Tuner {
       for (std::size_t pixel = 0; pixel < all.size(); ++pixel) {
         component[pixel] = double{all[pixel][c]};
       }
-      const std::vector<double> medians = median_around(component, width_);
+      const std::vector<double> medians = run::median_around(component, width_);
       for (std::size_t pixel = 0; pixel < all.size(); ++pixel) {
         guess_[pixel][c] = static_cast<float>(medians[pixel]);
       }
@@ -302,8 +303,8 @@ class Tuner {
     return more < kSure * other.standard_error_beyond(1 + kTolerance, best);
   }
 
-  const Dump& dump_;
-  const Tune& t_;
+  const run::Dump& dump_;
+  const TuneRequest& t_;
   std::size_t width_ = 0, height_ = 0;
   std::size_t parts_ = kParts;
   std::vector<double> shares_;      // by part: its share of the paths
@@ -313,12 +314,12 @@ class Tuner {
   Tiles u_tiles_;                   // the variance of u; later all that u adds to the errors
   std::vector<Traversal> traversals_;
   std::uint64_t done_ = 0;  // traversals
-  Tuning tuning_;
+  TuneResult tuning_;
 };
 
 }  // namespace
 
-Tuning tune(const Dump& dump, const Tune& tune) {
+TuneResult tune(const run::Dump& dump, const TuneRequest& tune) {
   return Tuner(dump, tune).run();
 }
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "filter/parameters.h"
-#include "study/dump.h"
-#include "study/noise_share.h"
-#include "study/passes.h"
+#include "run/dump.h"
+#include "run/noise_share.h"
+#include "run/passes.h"
 
 namespace psf::study {
 
@@ -35,7 +35,7 @@ struct TuneRow {
   double neighbors = 0;
 };
 
-struct Tuning {
+struct TuneResult {
   std::vector<TuneRow> rows;  // in the order of the sets
   std::size_t best = 0;       // the choice: number of the row with the least error
   std::size_t parts = 0;      // number of parts that were compared
@@ -48,7 +48,7 @@ struct Tuning {
   // The noise of the unfiltered picture, for the paths that the first set's `sources` chooses.
   // Paths where u, alpha, x or c is not finite are left out, whatever else the sets would leave
   // out.
-  NoiseShare noise;
+  run::NoiseShare noise;
   // The least bias_sq where it is below 0, else 0. Parts of one low-discrepancy sequence compensate
   // each other, so that their noise correlates and every bias_sq is off by this much.
   double constant = 0;
@@ -58,9 +58,9 @@ struct Tuning {
   bool has_independent_paths = false;
 };
 
-struct Tune {
+struct TuneRequest {
   std::span<const filter::Parameters> sets;
-  PassSelection passes;
+  run::PassSelection passes;
   std::size_t camera = 0;
   double epsilon = 1e-2;
   std::optional<std::uint64_t> max_memory;                                   // limit in bytes
@@ -71,7 +71,7 @@ struct Tune {
 // turn, or to two parts where a set has fewer than four blocks. Each part gives a filtered picture
 // F, and the picture A of the same paths without filter. Throws Error{usage} where a set has only
 // one block, and what filter_many() throws.
-[[nodiscard]] Tuning tune(const Dump& dump, const Tune& tune);
+[[nodiscard]] TuneResult tune(const run::Dump& dump, const TuneRequest& tune);
 
 // A choice is good where no set's error is below the choice's error over 1 + kTolerance. It is
 // known to be good where this holds by kSure standard errors for every set.

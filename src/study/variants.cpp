@@ -46,8 +46,8 @@ std::vector<Traversal> split(std::span<const VariantGroup> groups,
   return traversals;
 }
 
-ManyRun run_of(const Traversal& traversal) {
-  ManyRun run;
+run::ManyRequest run_of(const Traversal& traversal) {
+  run::ManyRequest run;
   run.parameters = traversal.group->parameters;
   const auto begin = traversal.group->radii.begin() + static_cast<std::ptrdiff_t>(traversal.first);
   run.radii.assign(begin, begin + static_cast<std::ptrdiff_t>(traversal.count));

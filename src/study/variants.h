@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "filter/parameters.h"
-#include "study/many_dump.h"
+#include "run/many_dump.h"
 
 namespace psf::study {
 
@@ -35,6 +35,6 @@ struct Traversal {
     const std::function<std::size_t(const VariantGroup&)>& at_once);
 
 // The run of a traversal; the caller sets passes and limits.
-[[nodiscard]] ManyRun run_of(const Traversal& traversal);
+[[nodiscard]] run::ManyRequest run_of(const Traversal& traversal);
 
 }  // namespace psf::study

@@ -1,5 +1,5 @@
 // check() names frame, chunk, channel and records of every fault.
-#include "formats/check.h"
+#include "formats/check/check.h"
 
 #include <functional>
 
@@ -39,7 +39,7 @@ void flip(test::Bytes& bytes, std::size_t place) {
 TEST_CASE("a whole file has no fault, and its numbers are told") {
   const test::Scratch scratch;
   test::write_golden(scratch.path("c.pvb"), Codec::zstd);
-  const CheckReport report = check(scratch.path("c.pvb"));
+  const CheckResult report = check(scratch.path("c.pvb"));
   CHECK(report.faults.empty());
   CHECK(report.records == test::kGoldenRecords);
   CHECK(report.passes == 2);

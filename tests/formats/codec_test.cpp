@@ -1,14 +1,14 @@
 // Checksums, shuffle and zstd against their definitions.
-#include "formats/codec.h"
+#include "formats/layout/codec.h"
 
 #include <random>
 
 #include "catch.h"
 #include "core/error.h"
 #include "file_bytes.h"
-#include "formats/chunk.h"
-#include "formats/crc.h"
-#include "formats/layout.h"
+#include "formats/layout/chunk.h"
+#include "formats/layout/crc.h"
+#include "formats/layout/layout.h"
 
 using namespace psf;
 using namespace psf::formats;

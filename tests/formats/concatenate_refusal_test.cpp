@@ -7,10 +7,10 @@
 #include "core/error.h"
 #include "failing.h"
 #include "file_bytes.h"
-#include "formats/check.h"
-#include "formats/concatenate.h"
-#include "formats/metadata.h"
-#include "formats/reader.h"
+#include "formats/check/check.h"
+#include "formats/layout/metadata.h"
+#include "formats/read/reader.h"
+#include "formats/write/concatenate.h"
 #include "numbered.h"
 
 using namespace psf;

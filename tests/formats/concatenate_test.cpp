@@ -1,5 +1,5 @@
 // concatenate(): files joined, converted and thinned out hold the values of their parts.
-#include "formats/concatenate.h"
+#include "formats/write/concatenate.h"
 
 #include <cmath>
 #include <filesystem>
@@ -10,8 +10,8 @@
 #include "core/error.h"
 #include "failing.h"
 #include "file_bytes.h"
-#include "formats/check.h"
-#include "formats/reader.h"
+#include "formats/check/check.h"
+#include "formats/read/reader.h"
 #include "numbered.h"
 
 using namespace psf;
@@ -47,9 +47,9 @@ struct Parts {
                     out = scratch.path("out.pvb");
 };
 
-ConcatenateReport join(const std::vector<std::string>& inputs, const std::string& out,
+ConcatenateResult join(const std::vector<std::string>& inputs, const std::string& out,
                        const ConcatenateOptions& options = {}) {
-  const ConcatenateReport report = concatenate(inputs, out, options);
+  const ConcatenateResult report = concatenate(inputs, out, options);
   CHECK(check(out).faults.empty());
   const Reader reader(out);
   CHECK(reader.closed());
@@ -71,7 +71,7 @@ std::vector<float> floats(const Reader& reader, const std::string& channel) {
 
 TEST_CASE("joined files are their parts one behind the other") {
   const Parts parts;
-  const ConcatenateReport report = join({parts.a, parts.b, parts.c}, parts.out);
+  const ConcatenateResult report = join({parts.a, parts.b, parts.c}, parts.out);
   CHECK(report.overflows == 0);
   CHECK(report.notes.empty());
   const Reader reader(parts.out);

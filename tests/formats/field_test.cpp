@@ -9,9 +9,9 @@
 #include "core/error.h"
 #include "failing.h"
 #include "file_bytes.h"
-#include "formats/check.h"
-#include "formats/reader.h"
-#include "formats/recover.h"
+#include "formats/check/check.h"
+#include "formats/check/recover.h"
+#include "formats/read/reader.h"
 #include "golden.h"
 
 using namespace psf;
@@ -96,7 +96,7 @@ void use_recovered(const std::string& path, bool all_recovered) {
   const std::string out = path + ".out";
   std::remove(out.c_str());
   try {
-    const RecoverReport report = recover(path, out);
+    const RecoverResult report = recover(path, out);
     if (!check(out).faults.empty()) FAIL("a fault in what was recovered");
     if (Reader(out).records() != report.records_saved) FAIL("the report counts otherwise");
     if (report.records_saved > test::kGoldenRecords) FAIL("records that never were");

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/reader.h"
+#include "formats/read/reader.h"
 
 namespace psf::test {
 

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "formats/metadata.h"
-#include "formats/quantize.h"
+#include "formats/layout/metadata.h"
+#include "formats/layout/quantize.h"
 
 namespace psf::test {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "formats/head.h"
-#include "formats/writer.h"
+#include "formats/layout/head.h"
+#include "formats/write/writer.h"
 
 namespace psf::test {
 

@@ -13,8 +13,8 @@
 
 #include "catch.h"
 #include "file_bytes.h"
-#include "formats/check.h"
-#include "formats/reader.h"
+#include "formats/check/check.h"
+#include "formats/read/reader.h"
 
 using namespace psf;
 using namespace psf::formats;

@@ -16,8 +16,8 @@
 #include "catch.h"
 #include "core/error.h"
 #include "file_bytes.h"
-#include "formats/check.h"
-#include "formats/reader.h"
+#include "formats/check/check.h"
+#include "formats/read/reader.h"
 #include "numbered.h"
 
 using namespace psf;

@@ -1,5 +1,5 @@
 // Metadata comes back whole; what is malformed is named.
-#include "formats/metadata.h"
+#include "formats/layout/metadata.h"
 
 #include <cmath>
 

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "formats/metadata.h"
+#include "formats/layout/metadata.h"
 
 namespace psf::test {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "formats/reader.h"
-#include "formats/writer.h"
+#include "formats/read/reader.h"
+#include "formats/write/writer.h"
 
 namespace psf::test {
 

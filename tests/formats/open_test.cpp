@@ -7,7 +7,7 @@
 #include "catch.h"
 #include "core/error.h"
 #include "file_bytes.h"
-#include "formats/reader.h"
+#include "formats/read/reader.h"
 #include "golden.h"
 #include "numbered.h"
 

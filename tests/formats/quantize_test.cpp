@@ -1,5 +1,5 @@
 // The declared quantisations keep what they promise.
-#include "formats/quantize.h"
+#include "formats/layout/quantize.h"
 
 #include <cmath>
 #include <limits>

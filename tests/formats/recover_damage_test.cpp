@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "failing.h"
 #include "file_bytes.h"
-#include "formats/recover.h"
+#include "formats/check/recover.h"
 #include "numbered.h"
 
 using namespace psf;
@@ -51,7 +51,7 @@ class Judge {
     ++counts.cases;
     test::save(in_, bytes);
     std::filesystem::remove(out_);
-    RecoverReport report;
+    RecoverResult report;
     try {
       report = recover(in_, out_);
     } catch (const Error& error) {

@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "failing.h"
 #include "file_bytes.h"
-#include "formats/recover.h"
+#include "formats/check/recover.h"
 #include "numbered.h"
 
 using namespace psf;

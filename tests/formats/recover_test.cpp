@@ -1,5 +1,5 @@
 // recover() saves what is whole, names what is lost, and knows which of both it is.
-#include "formats/recover.h"
+#include "formats/check/recover.h"
 
 #include <filesystem>
 
@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "failing.h"
 #include "file_bytes.h"
-#include "formats/reader.h"
+#include "formats/read/reader.h"
 #include "numbered.h"
 
 using namespace psf;
@@ -27,10 +27,10 @@ struct Case {
     whole = bytes = test::load(in);
   }
 
-  RecoverReport run(const RecoverOptions& options = {}) {
+  RecoverResult run(const RecoverOptions& options = {}) {
     test::save(in, bytes);
     std::filesystem::remove(out);
-    const RecoverReport report = recover(in, out, options);
+    const RecoverResult report = recover(in, out, options);
     CHECK(check(out).faults.empty());
     CHECK_FALSE(std::filesystem::exists(out + ".partial"));
     bytes = whole;
@@ -45,7 +45,7 @@ struct Case {
 };
 
 // All that was there, the resume state too.
-void check_whole(const Case& c, const RecoverReport& report) {
+void check_whole(const Case& c, const RecoverResult& report) {
   CHECK(report.nothing_lost());
   CHECK(report.records_saved == kRecords);
   CHECK(report.records_lost == 0);
@@ -72,7 +72,7 @@ std::string state_of(const std::string& path) {
 
 TEST_CASE("a file without a fault is recovered whole, under another uuid") {
   Case c(Codec::zstd);
-  const RecoverReport report = c.run();
+  const RecoverResult report = c.run();
   check_whole(c, report);
   CHECK(report.faults.empty());
   CHECK_FALSE(report.head_restored);
@@ -98,7 +98,7 @@ void destroy_head(std::size_t step) {
     }
     test::save(c.in, c.bytes);
     CHECK_THROWS_AS(Reader(c.in), Error);
-    const RecoverReport report = c.run();
+    const RecoverResult report = c.run();
     check_whole(c, report);
     CHECK(report.head_restored);
     REQUIRE(report.faults.size() == 1);
@@ -140,7 +140,7 @@ TEST_CASE("HEAD is restored while one commit has a whole copy of it") {
       c.flip(commits[k].offset + test::get(c.whole, commits[k].offset + 160, 8) + 300);
     }
     if (damaged < commits.size()) {
-      const RecoverReport report = c.run();
+      const RecoverResult report = c.run();
       check_whole(c, report);
       CHECK(report.head_restored);
     } else {
@@ -161,7 +161,7 @@ TEST_CASE("a damaged column costs its chunk and nothing else") {
         CAPTURE(chunk, k);
         const std::size_t column = frame + 96 + 24 * k;
         c.flip(frame + test::get(c.whole, column + 8, 8) + test::get(c.whole, column + 16, 8) / 2);
-        const RecoverReport report = c.run();
+        const RecoverResult report = c.run();
         const std::uint64_t first = test::get(c.whole, frame + 64, 8);
         const std::uint64_t count = test::get(c.whole, frame + 72, 4);
         CHECK_FALSE(report.nothing_lost());
@@ -188,7 +188,7 @@ TEST_CASE("the damaged front of a chunk costs that chunk, which the index still 
   for (std::size_t chunk = 0; chunk < chunks.size(); ++chunk) {
     CAPTURE(chunk);
     c.flip(chunks[chunk].offset + 70);
-    const RecoverReport report = c.run();
+    const RecoverResult report = c.run();
     const std::uint64_t first = test::get(c.whole, chunks[chunk].offset + 64, 8);
     const std::uint64_t count = test::get(c.whole, chunks[chunk].offset + 72, 4);
     REQUIRE(report.losses.size() == 1);
@@ -214,7 +214,7 @@ TEST_CASE("damaged commits, indices, copies and slots cost no record") {
     for (const std::size_t place : places) {
       CAPTURE(closed, place);
       c.flip(place);
-      const RecoverReport report = c.run();
+      const RecoverResult report = c.run();
       check_whole(c, report);
       CHECK_FALSE(report.faults.empty());
     }
@@ -228,12 +228,12 @@ TEST_CASE("records of a pass that no commit ends are left, or saved where asked"
     test::append_numbered(writer, kRecords, 2 * test::kNumberedCapacity);
     c.whole = c.bytes = test::load(c.in);
   }
-  const RecoverReport left = c.run();
+  const RecoverResult left = c.run();
   check_whole(c, left);
   CHECK(left.uncommitted_bytes == 2 * 4096);
   CHECK(state_of(c.out) == test::numbered_state(kPasses));
 
-  const RecoverReport taken = c.run({true});
+  const RecoverResult taken = c.run({true});
   CHECK(taken.nothing_lost());
   CHECK(taken.uncommitted_bytes == 0);
   CHECK(taken.records_saved == kRecords + 2 * test::kNumberedCapacity);
@@ -252,7 +252,7 @@ TEST_CASE("a file whose only pass was never committed gives its records where as
   const test::Bytes cut = c.bytes;
   CHECK_THROWS_AS(c.run(), Error);
   c.bytes = cut;
-  const RecoverReport report = c.run({true});
+  const RecoverResult report = c.run({true});
   CHECK(report.nothing_lost());
   CHECK(test::holds_passes(Reader(c.out), 1));
 }
@@ -261,7 +261,7 @@ TEST_CASE("where slot and last commit are both lost, nobody says that nothing is
   Case c(Codec::raw, false);
   c.flip(4096 + 5);
   c.flip(test::frames(c.whole, "CMIT").back().offset + 70);
-  const RecoverReport report = c.run();
+  const RecoverResult report = c.run();
   CHECK_FALSE(report.nothing_lost());
   CHECK(report.losses.back().frame == "SLOT");
   CHECK(report.records_saved == kRecords - test::kNumberedPass);

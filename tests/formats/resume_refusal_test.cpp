@@ -5,9 +5,9 @@
 #include "catch.h"
 #include "core/error.h"
 #include "file_bytes.h"
-#include "formats/file.h"
-#include "formats/metadata.h"
-#include "formats/reader.h"
+#include "formats/layout/file.h"
+#include "formats/layout/metadata.h"
+#include "formats/read/reader.h"
 #include "numbered.h"
 
 using namespace psf;

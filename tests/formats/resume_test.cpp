@@ -5,9 +5,9 @@
 #include "core/error.h"
 #include "failing.h"
 #include "file_bytes.h"
-#include "formats/check.h"
-#include "formats/file.h"
-#include "formats/reader.h"
+#include "formats/check/check.h"
+#include "formats/layout/file.h"
+#include "formats/read/reader.h"
 #include "numbered.h"
 
 using namespace psf;

@@ -8,9 +8,9 @@
 #include "catch.h"
 #include "core/error.h"
 #include "file_bytes.h"
-#include "formats/quantize.h"
-#include "formats/reader.h"
-#include "formats/writer.h"
+#include "formats/layout/quantize.h"
+#include "formats/read/reader.h"
+#include "formats/write/writer.h"
 #include "golden.h"
 
 using namespace psf;

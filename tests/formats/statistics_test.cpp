@@ -1,11 +1,11 @@
 // Statistics and sizes against values that are known.
-#include "formats/statistics.h"
+#include "formats/read/statistics.h"
 
 #include <limits>
 
 #include "catch.h"
 #include "file_bytes.h"
-#include "formats/writer.h"
+#include "formats/write/writer.h"
 
 using namespace psf;
 using namespace psf::formats;

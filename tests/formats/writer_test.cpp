@@ -1,13 +1,13 @@
 // The writer: a name never holds less than a pass, misuse is an error, what it writes checks out.
-#include "formats/writer.h"
+#include "formats/write/writer.h"
 
 #include <filesystem>
 
 #include "catch.h"
 #include "core/error.h"
 #include "file_bytes.h"
-#include "formats/check.h"
-#include "formats/reader.h"
+#include "formats/check/check.h"
+#include "formats/read/reader.h"
 #include "golden.h"
 
 using namespace psf;

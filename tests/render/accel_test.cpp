@@ -1,10 +1,10 @@
 // Ray queries: spheres from both sides, no gaps at edges, no ray that meets its own surface again.
-#include "render/accel.h"
+#include "render/accel/accel.h"
 
 #include <random>
 
 #include "analytic_support.h"
-#include "render/surface.h"
+#include "render/light/surface.h"
 
 using namespace psf;
 using namespace psf::render;

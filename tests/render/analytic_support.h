@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "catch.h"
-#include "render/integrator.h"
+#include "render/light/integrator.h"
 
 namespace psf::render::test {
 

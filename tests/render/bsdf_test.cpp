@@ -1,6 +1,6 @@
 // Scattering: samples follow their density, densities integrate to one, energy and reciprocity
 // hold.
-#include "render/bsdf.h"
+#include "render/light/bsdf.h"
 
 #include <random>
 

@@ -1,5 +1,5 @@
 // Camera rays against the matrices that the file gives for them.
-#include "render/camera.h"
+#include "render/camera/camera.h"
 
 #include <cmath>
 #include <cstdint>

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "render/integrator.h"
+#include "render/light/integrator.h"
 
 namespace psf::tests {
 

@@ -3,9 +3,9 @@
 #include <random>
 
 #include "analytic_support.h"
-#include "render/distribution.h"
-#include "render/frame.h"
-#include "render/transport.h"
+#include "render/light/distribution.h"
+#include "render/light/frame.h"
+#include "render/light/transport.h"
 
 using namespace psf;
 using namespace psf::render;

@@ -4,7 +4,7 @@
 
 #include "catch.h"
 #include "load_support.h"
-#include "render/load_parts.h"
+#include "render/scene/load_parts.h"
 
 namespace psf::render {
 namespace {

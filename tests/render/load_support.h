@@ -9,7 +9,7 @@
 
 #include "catch.h"
 #include "core/error.h"
-#include "render/load.h"
+#include "render/scene/load.h"
 
 namespace psf::render {
 

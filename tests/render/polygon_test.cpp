@@ -1,5 +1,5 @@
 // Faces cut into triangles, against the shoelace formula and the even-odd rule.
-#include "render/polygon.h"
+#include "render/scene/polygon.h"
 
 #include <algorithm>
 #include <cmath>

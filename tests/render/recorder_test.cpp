@@ -1,5 +1,5 @@
 // The recorder's columns and sums against the records put in.
-#include "render/recorder.h"
+#include "render/loop/recorder.h"
 
 #include <cstring>
 #include <limits>

@@ -10,8 +10,8 @@
 
 #include "core/parallel.h"
 #include "fake_integrator.h"
-#include "formats/reader.h"
-#include "render/render.h"
+#include "formats/read/reader.h"
+#include "render/loop/render.h"
 #include "temp_folder.h"
 
 namespace psf::tests {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "catch.h"
-#include "formats/metadata.h"
+#include "formats/layout/metadata.h"
 #include "render_dump.h"
 
 using namespace psf;

@@ -11,8 +11,8 @@
 
 #include "catch.h"
 #include "core/output_file.h"
-#include "formats/metadata.h"
-#include "formats/reader.h"
+#include "formats/layout/metadata.h"
+#include "formats/read/reader.h"
 #include "temp_folder.h"
 
 using namespace psf;

@@ -1,12 +1,12 @@
 // The loop over passes, cameras and paths, seen through the dumps that it writes.
-#include "render/render.h"
+#include "render/loop/render.h"
 
 #include <algorithm>
 
 #include "catch.h"
 #include "core/error.h"
-#include "formats/metadata.h"
-#include "render/camera.h"
+#include "formats/layout/metadata.h"
+#include "render/camera/camera.h"
 #include "render_dump.h"
 
 using namespace psf;

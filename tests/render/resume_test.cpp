@@ -1,5 +1,5 @@
 // A render that was stopped and goes on is the render that never stopped.
-#include "render/resume.h"
+#include "render/loop/resume.h"
 
 #include <csignal>
 #include <cstring>

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "catch.h"
-#include "render/sampler.h"
-#include "render/sampler_hash.h"
+#include "render/sample/sampler.h"
+#include "render/sample/sampler_hash.h"
 
 using namespace psf;
 using namespace psf::render;

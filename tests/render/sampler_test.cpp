@@ -1,5 +1,5 @@
 // Samplers: the nets they promise, checked by counting points in elementary intervals.
-#include "render/sampler.h"
+#include "render/sample/sampler.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "catch.h"
-#include "render/halton.h"
-#include "render/sampler_hash.h"
-#include "render/sobol.h"
+#include "render/sample/halton.h"
+#include "render/sample/sampler_hash.h"
+#include "render/sample/sobol.h"
 
 using namespace psf;
 using namespace psf::render;

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
-#include "formats/metadata.h"
+#include "formats/layout/metadata.h"
 #include "load_support.h"
-#include "render/render.h"
+#include "render/loop/render.h"
 #include "render_dump.h"
 
 namespace psf::render {

@@ -1,4 +1,4 @@
-#include "render/texture.h"
+#include "render/scene/texture.h"
 
 #include "catch.h"
 #include "gltf_document.h"

@@ -6,11 +6,11 @@
 
 #include "catch.h"
 #include "core/error.h"
+#include "metrics/reference.h"
+#include "run/many_dump.h"
+#include "runs/write_dump.h"
 #include "study/analytic.h"
-#include "study/many_dump.h"
-#include "study/metrics/reference.h"
 #include "temp_folder.h"
-#include "write_dump.h"
 
 namespace psf {
 namespace {
@@ -35,25 +35,25 @@ TEST_CASE("The error that halves estimate is the error against the truth") {
     const study::Analytic scene(which);
     const std::string path = folder / (scene.name() + std::string(".pvb"));
     scene.write_dump(path, 7, 8);
-    const study::Dump dump(path);
-    const study::Reference reference(scene.reference(), study::Analytic::kSize, {},
-                                     study::kPixelMetrics);
+    const run::Dump dump(path);
+    const metrics::Reference reference(scene.reference(), study::Analytic::kSize, {},
+                                       metrics::kPixelMetrics);
     for (const std::uint64_t block : {1u, 2u, 4u}) {
       const std::vector<filter::Parameters> sets = radii(block);
-      study::Tune tune;
+      study::TuneRequest tune;
       tune.sets = sets;
-      const study::Tuning tuning = study::tune(dump, tune);
+      const study::TuneResult tuning = study::tune(dump, tune);
       CHECK(tuning.parts == (block == 4 ? 2 : 4));
       CHECK(tuning.has_independent_paths);
 
-      study::ManyRun run;
+      run::ManyRequest run;
       run.parameters = sets[0];
       for (const filter::Parameters& set : sets) run.radii.push_back(set.radius);
-      const study::ManyOutcome outcome = study::filter_many(dump, run);
+      const run::ManyResult outcome = run::filter_many(dump, run);
       double least = 1e9, chosen = 0;
       for (std::size_t k = 0; k < sets.size(); ++k) {
         const double truth =
-            reference.measure(outcome.pictures[0].filtered(k))[study::Metric::rel_mse];
+            reference.measure(outcome.pictures[0].filtered(k))[metrics::Metric::rel_mse];
         INFO(scene.name() << ", blocks of " << block << ", r0 " << sets[k].radius.r0);
         const double most = 1.25;
         const double noise = 4 * tuning.rows[k].standard_error - tuning.constant;
@@ -64,7 +64,7 @@ TEST_CASE("The error that halves estimate is the error against the truth") {
       }
       CHECK(chosen <= 1.15 * least);
       CHECK(tuning.unfiltered ==
-            Approx(reference.measure(outcome.pictures[0].unfiltered())[study::Metric::rel_mse])
+            Approx(reference.measure(outcome.pictures[0].unfiltered())[metrics::Metric::rel_mse])
                 .epsilon(0.3));
     }
   }
@@ -94,16 +94,16 @@ RecordSet square(const Truth& truth, const Unfiltered& u) {
   return set;
 }
 
-study::Tuning tune_square(const std::string& path, const RecordSet& set,
-                          const std::vector<filter::Parameters>& sets) {
+study::TuneResult tune_square(const std::string& path, const RecordSet& set,
+                              const std::vector<filter::Parameters>& sets) {
   tests::DumpOptions options;
   options.cameras = {{kTuneSide, kTuneSide, 1.0 / kTuneSide}};
   options.passes.assign(kPasses, kTuneSide * kTuneSide);
   options.chunk_capacity = kTuneSide * kTuneSide;
   tests::write_dump(path, set, options);
-  study::Tune tune;
+  study::TuneRequest tune;
   tune.sets = sets;
-  return study::tune(study::Dump(path), tune);
+  return study::tune(run::Dump(path), tune);
 }
 
 TEST_CASE("A set's own smear does not make its error seem small") {
@@ -112,20 +112,21 @@ TEST_CASE("A set's own smear does not make its error seem small") {
   const std::size_t line = kTuneSide / 2;
   const auto truth = [&](std::size_t x) { return x >= line && x < line + 3 ? 300.0 : 0.3; };
   const std::vector<filter::Parameters> sets = radii(1);
-  const study::Tuning tuning =
+  const study::TuneResult tuning =
       tune_square(folder / "a.pvb", square(truth, [](std::size_t) { return 0.0; }), sets);
   std::vector<Rgb> picture(kTuneSide * kTuneSide);
   for (std::size_t k = 0; k < picture.size(); ++k) {
     const auto value = static_cast<float>(truth(k % kTuneSide));
     picture[k] = Rgb(value, value, value);
   }
-  const study::Reference reference(picture, kTuneSide, {}, study::kPixelMetrics);
-  study::ManyRun run;
+  const metrics::Reference reference(picture, kTuneSide, {}, metrics::kPixelMetrics);
+  run::ManyRequest run;
   run.parameters = sets[0];
   for (const filter::Parameters& set : sets) run.radii.push_back(set.radius);
-  const study::ManyOutcome outcome = study::filter_many(study::Dump(folder / "a.pvb"), run);
+  const run::ManyResult outcome = run::filter_many(run::Dump(folder / "a.pvb"), run);
   for (std::size_t k = 0; k < sets.size(); ++k) {
-    const double error = reference.measure(outcome.pictures[0].filtered(k))[study::Metric::rel_mse];
+    const double error =
+        reference.measure(outcome.pictures[0].filtered(k))[metrics::Metric::rel_mse];
     INFO("r0 " << sets[k].radius.r0);
     CHECK(tuning.rows[k].error > error / 3);
     CHECK(tuning.rows[k].error < error * 3);
@@ -138,8 +139,8 @@ TEST_CASE("The noise of u is told apart and decides nothing") {
   const auto none = [](std::size_t) { return 0.0; };
   const auto fireflies = [](std::size_t i) { return i % 997 == 0 ? 1e3 : 0.0; };
   const std::vector<filter::Parameters> sets = radii(1);
-  const study::Tuning without = tune_square(folder / "a.pvb", square(truth, none), sets);
-  const study::Tuning with = tune_square(folder / "b.pvb", square(truth, fireflies), sets);
+  const study::TuneResult without = tune_square(folder / "a.pvb", square(truth, none), sets);
+  const study::TuneResult with = tune_square(folder / "b.pvb", square(truth, fireflies), sets);
   CHECK(without.u_variance == 0);
   // The variance of 1 bright path in 997, with kPasses paths per pixel; 1 / (g^2 + epsilon) is
   // between 1/4 and 1.
@@ -172,7 +173,7 @@ TEST_CASE("Where u and alpha c make up for each other, errors are those of the w
     set.contribution[i] = Rgb(1, 1, 1);
   }
   const std::vector<filter::Parameters> sets = radii(1);
-  const study::Tuning tuning = tune_square(folder / "a.pvb", set, sets);
+  const study::TuneResult tuning = tune_square(folder / "a.pvb", set, sets);
   CHECK(tuning.unfiltered == Approx(0).margin(1e-9));
   CHECK(tuning.u_variance > 0.02);
   CHECK(tuning.u_covariance == Approx(-2 * tuning.u_variance).epsilon(1e-6));
@@ -197,7 +198,7 @@ TEST_CASE("Errors are those of the noise of c where u and alpha make up for each
     set.contribution[i] = Rgb(unit(random));
   }
   const std::vector<filter::Parameters> sets = radii(1);
-  const study::Tuning tuning = tune_square(folder / "a.pvb", set, sets);
+  const study::TuneResult tuning = tune_square(folder / "a.pvb", set, sets);
   const study::TuneRow& wide = tuning.rows[5];
   CHECK(wide.error < 0.25 * tuning.rows[0].error);
   for (const study::TuneRow& row : tuning.rows) CHECK(row.error < 1e-3);
@@ -210,10 +211,10 @@ TEST_CASE("Progress ends with the last reading, and the noise is of the paths th
   const auto none = [](std::size_t) { return 0.0; };
   const RecordSet set = square(one, none);
   std::vector<filter::Parameters> sets = radii(1);
-  const study::Tuning all = tune_square(folder / "a.pvb", set, sets);
+  const study::TuneResult all = tune_square(folder / "a.pvb", set, sets);
   for (filter::Parameters& parameters : sets) parameters.sources = 2;
-  const study::Dump dump(folder / "a.pvb");
-  study::Tune tune;
+  const run::Dump dump(folder / "a.pvb");
+  study::TuneRequest tune;
   tune.sets = sets;
   std::uint64_t last = 0, of = 0, before_noise = 0;
   tune.on_progress = [&](std::uint64_t done, std::uint64_t total) {
@@ -222,7 +223,7 @@ TEST_CASE("Progress ends with the last reading, and the noise is of the paths th
     last = done;
     of = total;
   };
-  const study::Tuning half = study::tune(dump, tune);
+  const study::TuneResult half = study::tune(dump, tune);
   CHECK(last == of);
   CHECK(before_noise <= of / 2);
   // Half of the paths have twice the noise.
@@ -241,9 +242,9 @@ TEST_CASE("A picture of one tile says nothing of its noise") {
   options.passes.assign(4, 64);
   tests::write_dump(folder / "a.pvb", set, options);
   const std::vector<filter::Parameters> sets = radii(1);
-  study::Tune tune;
+  study::TuneRequest tune;
   tune.sets = sets;
-  const study::Tuning tuning = study::tune(study::Dump(folder / "a.pvb"), tune);
+  const study::TuneResult tuning = study::tune(run::Dump(folder / "a.pvb"), tune);
   for (std::size_t k = 0; k < sets.size(); ++k) {
     CHECK(tuning.rows[k].may_be_better == (k != tuning.best));
   }
@@ -253,11 +254,11 @@ TEST_CASE("One block alone has no parts to compare") {
   const tests::TempFolder folder;
   const study::Analytic scene(study::AnalyticScene::smooth);
   scene.write_dump(folder / "a.pvb", 1, 2);
-  study::Tune tune;
+  study::TuneRequest tune;
   const std::vector<filter::Parameters> sets = radii(4);
   tune.sets = sets;
   try {
-    static_cast<void>(study::tune(study::Dump(folder / "a.pvb"), tune));
+    static_cast<void>(study::tune(run::Dump(folder / "a.pvb"), tune));
     FAIL("was tuned");
   } catch (const Error& error) {
     CHECK(error.code() == ErrorCode::usage);

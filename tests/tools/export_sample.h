@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "formats/reader.h"
-#include "formats/writer.h"
+#include "formats/read/reader.h"
+#include "formats/write/writer.h"
 
 namespace psf::tests {
 

@@ -11,7 +11,7 @@
 #include "catch.h"
 #include "command.h"
 #include "film/image.h"
-#include "formats/writer.h"
+#include "formats/write/writer.h"
 
 using psf::tests::Outcome;
 using psf::tests::read_text;

@@ -75,7 +75,7 @@ Hit first_hit(const Vec3& from, const Vec3& toward) {
 // One path after the other.
 class Painter {
  public:
-  Painter(std::size_t side, study::BlockRecords& out) : side_(side), out_(out) {}
+  Painter(std::size_t side, run::BlockRecords& out) : side_(side), out_(out) {}
 
   void add_path(std::size_t pixel) {
     const auto column = static_cast<float>(pixel % side_), row = static_cast<float>(pixel / side_);
@@ -116,7 +116,7 @@ class Painter {
   }
 
   std::size_t side_;
-  study::BlockRecords& out_;
+  run::BlockRecords& out_;
   std::minstd_rand random_{1};
 };
 

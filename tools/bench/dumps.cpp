@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "core/error.h"
-#include "formats/commit.h"
-#include "formats/crc.h"
-#include "formats/frame.h"
-#include "formats/head_frame.h"
-#include "formats/layout.h"
-#include "formats/metadata.h"
-#include "formats/slot.h"
+#include "formats/layout/commit.h"
+#include "formats/layout/crc.h"
+#include "formats/layout/frame.h"
+#include "formats/layout/head_frame.h"
+#include "formats/layout/layout.h"
+#include "formats/layout/metadata.h"
+#include "formats/layout/slot.h"
 
 namespace psf::bench {
 namespace {

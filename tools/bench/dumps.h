@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string>
 
-#include "formats/reader.h"
-#include "formats/writer.h"
+#include "formats/read/reader.h"
+#include "formats/write/writer.h"
 
 namespace psf::bench {
 

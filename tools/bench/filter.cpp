@@ -96,8 +96,8 @@ class Bench {
   }
 
  private:
-  static std::optional<study::Dump> open(const std::string& path) {
-    return path.empty() ? std::nullopt : std::optional<study::Dump>(path);
+  static std::optional<run::Dump> open(const std::string& path) {
+    return path.empty() ? std::nullopt : std::optional<run::Dump>(path);
   }
 
   [[nodiscard]] std::string input() const {
@@ -199,7 +199,7 @@ class Bench {
   static constexpr std::size_t kThreadsNeighbors = 400;  // where asked for, else the first
 
   const FilterOptions& options_;
-  std::optional<study::Dump> dump_;
+  std::optional<run::Dump> dump_;
   core::Progress progress_;
   Sample sample_;
   std::size_t done_ = 0;

@@ -13,7 +13,7 @@
 #include "bench/dumps.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "formats/reader.h"
+#include "formats/read/reader.h"
 
 namespace psf::bench {
 namespace {

@@ -10,7 +10,7 @@
 namespace psf::bench {
 namespace {
 
-filter::Parameters parameters_for(const study::Dump& dump) {
+filter::Parameters parameters_for(const run::Dump& dump) {
   const auto has = [&dump](const char* channel) {
     return dump.reader().head().find(channel).has_value();
   };
@@ -28,7 +28,7 @@ filter::Parameters parameters_for(const study::Dump& dump) {
 
 }  // namespace
 
-Sample read_sample(const study::Dump& dump, std::size_t records) {
+Sample read_sample(const run::Dump& dump, std::size_t records) {
   Sample sample;
   sample.cameras = dump.cameras();
   sample.parameters = parameters_for(dump);

@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "filter/parameters.h"
-#include "study/block_records.h"
-#include "study/dump.h"
+#include "run/block_records.h"
+#include "run/dump.h"
 
 namespace psf::bench {
 
 struct Sample {
-  study::BlockRecords records;
+  run::BlockRecords records;
   std::vector<filter::CameraView> cameras;
   std::vector<std::size_t> passes;  // first record of each whole pass, and the end of the last one
   // The defaults, except that the radius does not shrink, and terms whose channel is missing are
@@ -28,7 +28,7 @@ struct Sample {
 [[nodiscard]] Sample make_box(std::size_t records);
 
 // The first `records` paths of the dump, or all. Throws Error{bad_input} where none has a vertex.
-[[nodiscard]] Sample read_sample(const study::Dump& dump, std::size_t records);
+[[nodiscard]] Sample read_sample(const run::Dump& dump, std::size_t records);
 
 // The records [first, last).
 [[nodiscard]] filter::Records part(const filter::Records& records, std::size_t first,

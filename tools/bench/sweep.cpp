@@ -16,8 +16,8 @@
 #include "core/parallel.h"
 #include "filter/parameters_text.h"
 #include "option_values.h"
-#include "study/filter_dump.h"
-#include "study/many_dump.h"
+#include "run/filter_dump.h"
+#include "run/many_dump.h"
 #include "version.h"
 
 namespace psf::bench {
@@ -59,17 +59,17 @@ double largest_difference(const std::vector<Rgb>& a, const std::vector<Rgb>& b) 
   return largest;
 }
 
-void add_rows(const study::Dump& dump, const std::string& r0, std::size_t repeat,
+void add_rows(const run::Dump& dump, const std::string& r0, std::size_t repeat,
               std::vector<Row>& rows) {
   filter::Radius largest;
   filter::parse_radius(r0, largest);
-  study::ManyRun many;
+  run::ManyRequest many;
   many.radii = pairs(largest);
-  study::FilterRun one;
+  run::FilterRequest one;
   one.parameters.radius = many.radii.front();
-  const auto filter_many = [&] { return study::filter_many(dump, many); };
-  const auto filter_one = [&] { return study::filter_dump(dump, one); };
-  const study::FilterOutcome alone = filter_one();
+  const auto filter_many = [&] { return run::filter_many(dump, many); };
+  const auto filter_one = [&] { return run::filter_dump(dump, one); };
+  const run::FilterResult alone = filter_one();
   const double difference =
       largest_difference(filter_many().pictures[0].filtered(0), alone.pictures[0].image().rgb());
   const Turns turns(
@@ -86,7 +86,7 @@ void run(const SweepOptions& options) {
   tools::keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
   tools::check_files({options.input}, {options.common.json});
-  const study::Dump dump(options.input);
+  const run::Dump dump(options.input);
   std::vector<Row> rows;
   for (const std::string& r0 : options.largest) add_rows(dump, r0, options.repeat, rows);
   print_table(rows);

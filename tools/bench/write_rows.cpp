@@ -14,8 +14,8 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "formats/reader.h"
-#include "formats/statistics.h"
+#include "formats/read/reader.h"
+#include "formats/read/statistics.h"
 
 namespace psf::bench {
 namespace {

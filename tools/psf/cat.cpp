@@ -12,7 +12,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/standard_streams.h"
-#include "formats/concatenate.h"
+#include "formats/write/concatenate.h"
 #include "pass_range.h"
 #include "text.h"
 #include "verbs.h"
@@ -33,7 +33,7 @@ formats::ConcatenateOptions to_library(const CatOptions& options) {
   result.channels = options.channels;
   result.drop = options.drop;
   result.quantize = options.quantize;
-  const study::PassSelection range = parse_passes(options.passes);
+  const run::PassSelection range = parse_passes(options.passes);
   result.first_pass = range.first;
   result.last_pass = range.last;
   return result;
@@ -45,7 +45,7 @@ void run(const CatOptions& options) {
   check_files({}, {options.output, options.common.json});
   check_files(options.inputs, {options.common.json});
   core::Progress progress("cat", options.common.quiet);
-  const formats::ConcatenateReport report =
+  const formats::ConcatenateResult report =
       formats::concatenate(options.inputs, core::followed(options.output), to_library(options),
                            [&](std::uint64_t done, std::uint64_t total) {
                              core::throw_if_interrupted("nothing is written");

@@ -18,9 +18,9 @@
 #include "core/parallel.h"
 #include "film/image.h"
 #include "film/picture.h"
+#include "metrics/error_picture.h"
+#include "metrics/reference.h"
 #include "notes.h"
-#include "study/metrics/error_picture.h"
-#include "study/metrics/reference.h"
 #include "verbs.h"
 
 namespace psf::tools {
@@ -33,21 +33,21 @@ struct CompareOptions {
   std::optional<double> max, min;
   std::vector<std::string> regions;  // "X,Y,WxH"; none: the whole picture
   std::string trim;                  // "0.1%" or "0.001"; empty: nothing
-  study::MetricOptions settings;
+  metrics::MetricOptions settings;
   std::vector<std::string> error_pictures;
-  double error_max = 0;  // 0: chosen by study::error_scale
-  std::string colors = study::kColorMaps[0];
+  double error_max = 0;  // 0: chosen by metrics::error_scale
+  std::string colors = metrics::kColorMaps[0];
   CommonOptions common;
 };
 
-study::Region parse_region(const std::string& text, const film::Picture& picture) {
+metrics::Region parse_region(const std::string& text, const film::Picture& picture) {
   static const std::regex form(R"((\d{1,9}),(\d{1,9}),(\d{1,9})x(\d{1,9}))");
   std::smatch parts;
   if (!std::regex_match(text, parts, form)) {
     throw Error(ErrorCode::usage, "--region " + text + ": no region, write X,Y,WxH in pixels");
   }
-  const study::Region region = {std::stoul(parts[1]), std::stoul(parts[2]), std::stoul(parts[3]),
-                                std::stoul(parts[4])};
+  const metrics::Region region = {std::stoul(parts[1]), std::stoul(parts[2]), std::stoul(parts[3]),
+                                  std::stoul(parts[4])};
   if (region.width == 0 || region.height == 0 || region.x + region.width > picture.width ||
       region.y + region.height > picture.height) {
     throw Error(ErrorCode::usage,
@@ -71,11 +71,11 @@ double parse_trim(const std::string& text) {
 }
 
 // Where there is a bound, in which direction it makes sense.
-void check_bounds(const CompareOptions& options, study::Metric metric) {
-  const bool lower = study::lower_is_better(metric);
+void check_bounds(const CompareOptions& options, metrics::Metric metric) {
+  const bool lower = metrics::lower_is_better(metric);
   if (lower ? options.min.has_value() : options.max.has_value()) {
     throw Error(ErrorCode::usage,
-                fmt::format("{} is better when {}, bound it with {}", study::name(metric),
+                fmt::format("{} is better when {}, bound it with {}", metrics::name(metric),
                             lower ? "lower" : "higher", lower ? "--max" : "--min"));
   }
 }
@@ -87,13 +87,13 @@ void check_outputs(const CompareOptions& options) {
   check_files({options.picture, options.reference}, outputs);
 }
 
-void write_error_pictures(const CompareOptions& options, study::Metric metric,
-                          const study::Errors& errors) {
+void write_error_pictures(const CompareOptions& options, metrics::Metric metric,
+                          const metrics::Errors& errors) {
   if (options.error_pictures.empty()) return;
-  const study::ErrorScale scale = study::error_scale(errors, metric, options.error_max);
+  const metrics::ErrorScale scale = metrics::error_scale(errors, metric, options.error_max);
   for (const std::string& path : options.error_pictures) {
-    study::write_error_picture(path, errors, metric, options.settings, scale, options.colors);
-    const char* what = study::error_name(metric);
+    metrics::write_error_picture(path, errors, metric, options.settings, scale, options.colors);
+    const char* what = metrics::error_name(metric);
     if (std::filesystem::path(path).extension() == ".exr") {
       fmt::print("{}: {} in channel Y\n", path, what);
     } else {
@@ -118,7 +118,7 @@ void judge(const CompareOptions& options, const CompareReport& report) {
     }
     const double value = row.values[report.first];
     const std::string text =
-        fmt::format("{} {}", study::name(report.first), value_text(report.first, value));
+        fmt::format("{} {}", metrics::name(report.first), value_text(report.first, value));
     // Written so that a not-a-number fails too.
     if (options.max && !(value <= *options.max)) {
       fail(fmt::format("{} is above {:g}", text, *options.max));
@@ -137,7 +137,7 @@ void run(const CompareOptions& options) {
   report.reference = options.reference;
   report.options = options.settings;
   report.options.validate();
-  report.first = study::parse_metric(options.metric);
+  report.first = metrics::parse_metric(options.metric);
   report.trim = parse_trim(options.trim);
   check_bounds(options, report.first);
   check_outputs(options);
@@ -146,7 +146,7 @@ void run(const CompareOptions& options) {
   const film::Picture reference = film::read_picture(
       options.reference, {options.reference_layer, options.layer, "--reference-layer"});
   const std::string note = film::check_comparable(picture, reference);
-  std::vector<study::Choice> choices;
+  std::vector<metrics::Choice> choices;
   for (const std::string& text : options.regions) {
     choices.push_back({parse_region(text, picture), report.trim});
     report.rows.push_back({text, {}});
@@ -158,8 +158,9 @@ void run(const CompareOptions& options) {
   print_notes(picture.notes, options.common.quiet);
   print_notes(reference.notes, options.common.quiet);
   if (!note.empty()) print_notes({note}, options.common.quiet);
-  const study::Errors errors =
-      study::Reference(reference.colors, reference.width, options.settings).errors(picture.colors);
+  const metrics::Errors errors =
+      metrics::Reference(reference.colors, reference.width, options.settings)
+          .errors(picture.colors);
   for (std::size_t k = 0; k < choices.size(); ++k) report.rows[k].values = errors.mean(choices[k]);
 
   print_values(report);
@@ -237,7 +238,7 @@ void add_compare(CLI::App& app) {
       ->check(CLI::PositiveNumber);
   command->add_option("--colors", options->colors, "colour map of --error")
       ->check(CLI::IsMember(
-          std::vector<std::string>(std::begin(study::kColorMaps), std::end(study::kColorMaps))))
+          std::vector<std::string>(std::begin(metrics::kColorMaps), std::end(metrics::kColorMaps))))
       ->capture_default_str();
   add_common(*command, options->common);
   set_example(*command, "psf compare filtered.exr reference.exr --metric FLIP --max 0.1");

@@ -9,70 +9,70 @@
 #include <utility>
 #include <vector>
 
-#include "study/metrics/errors.h"
-#include "study/metrics/metrics.h"
+#include "metrics/errors.h"
+#include "metrics/metrics.h"
 #include "text.h"
 
 namespace psf::tools {
 
 struct CompareRow {
   std::string region;  // "X,Y,WxH"; empty: the whole picture
-  study::Metrics values;
+  metrics::Metrics values;
 };
 
 struct CompareReport {
   std::string picture, layer, reference;
-  study::MetricOptions options;
-  study::Metric first = study::Metric::rel_mse;  // printed first
+  metrics::MetricOptions options;
+  metrics::Metric first = metrics::Metric::rel_mse;  // printed first
   double trim = 0;
   std::vector<CompareRow> rows;
 };
 
-inline std::vector<study::Metric> in_order(study::Metric first) {
-  std::vector<study::Metric> metrics = {first};
-  for (const study::Metric metric : study::kAllMetrics) {
+inline std::vector<metrics::Metric> in_order(metrics::Metric first) {
+  std::vector<metrics::Metric> metrics = {first};
+  for (const metrics::Metric metric : metrics::kAllMetrics) {
     if (metric != first) metrics.push_back(metric);
   }
   return metrics;
 }
 
-inline std::string value_text(study::Metric metric, double value, int digits = 6) {
-  return metric == study::Metric::psnr ? fmt::format("{:.2f} dB", value)
-                                       : fmt::format("{:.{}g}", value, digits);
+inline std::string value_text(metrics::Metric metric, double value, int digits = 6) {
+  return metric == metrics::Metric::psnr ? fmt::format("{:.2f} dB", value)
+                                         : fmt::format("{:.{}g}", value, digits);
 }
 
 // Prints one metric per line for the whole picture, or one region per line.
 inline void print_values(const CompareReport& report) {
-  const std::vector<study::Metric> metrics = in_order(report.first);
+  const std::vector<metrics::Metric> metrics = in_order(report.first);
   if (report.rows.front().region.empty()) {
-    for (const study::Metric metric : metrics) {
-      const std::string settings = study::settings(metric, report.options);
+    for (const metrics::Metric metric : metrics) {
+      const std::string settings = metrics::settings(metric, report.options);
       const std::string text = value_text(metric, report.rows.front().values[metric]);
-      fmt::print("{:<6} {}\n", study::name(metric),
+      fmt::print("{:<6} {}\n", metrics::name(metric),
                  settings.empty() ? text : fmt::format("{:<9}  ({})", text, settings));
     }
     return;
   }
   constexpr int kDigits = 4;
   fmt::print("{:<18}", "region");
-  for (const study::Metric metric : metrics) fmt::print("{:>11}", study::name(metric));
+  for (const metrics::Metric metric : metrics) fmt::print("{:>11}", metrics::name(metric));
   fmt::print("\n");
   for (const CompareRow& row : report.rows) {
     fmt::print("{:<18}", row.region);
-    for (const study::Metric metric : metrics) {
+    for (const metrics::Metric metric : metrics) {
       fmt::print("{:>11}", value_text(metric, row.values[metric], kDigits));
     }
     fmt::print("\n");
   }
   std::vector<std::pair<std::string, std::string>> notes;  // names of metrics, their settings
-  for (const study::Metric metric : metrics) {
-    const std::string settings = study::settings(metric, report.options);
+  for (const metrics::Metric metric : metrics) {
+    const std::string settings = metrics::settings(metric, report.options);
     const auto same = std::find_if(notes.begin(), notes.end(),
                                    [&](const auto& note) { return note.second == settings; });
     if (same != notes.end()) {
-      same->first += fmt::format(", {}", study::name(metric));
+      same->first += fmt::format(", {}", metrics::name(metric));
     } else if (!settings.empty()) {
-      notes.emplace_back(study::name(metric), settings);
+      notes.emplace_back(metrics::name(metric), settings);
     }
   }
   for (const auto& [names, settings] : notes) fmt::print("{}: {}\n", names, settings);
@@ -81,7 +81,7 @@ inline void print_values(const CompareReport& report) {
 inline void print_left_out(const CompareReport& report) {
   for (const CompareRow& row : report.rows) {
     const std::string where = row.region.empty() ? "" : row.region + ": ";
-    const study::Metrics& values = row.values;
+    const metrics::Metrics& values = row.values;
     if (report.trim > 0) {
       fmt::print("{}left out of each metric: the {} of the largest error, of {}\n", where,
                  counted(values.trimmed, "pixel", "pixels"),
@@ -97,15 +97,15 @@ inline void print_left_out(const CompareReport& report) {
 inline nlohmann::ordered_json to_json(const CompareReport& report) {
   using Json = nlohmann::ordered_json;
   Json metrics = Json::array(), rows = Json::array();
-  for (const study::Metric metric : in_order(report.first)) {
-    metrics.push_back({{"name", study::name(metric)},
-                       {"lower_is_better", study::lower_is_better(metric)},
-                       {"settings", study::settings(metric, report.options)}});
+  for (const metrics::Metric metric : in_order(report.first)) {
+    metrics.push_back({{"name", metrics::name(metric)},
+                       {"lower_is_better", metrics::lower_is_better(metric)},
+                       {"settings", metrics::settings(metric, report.options)}});
   }
   for (const CompareRow& row : report.rows) {
     Json values;
-    for (const study::Metric metric : in_order(report.first)) {
-      values[study::name(metric)] = row.values[metric];  // null where it is no number
+    for (const metrics::Metric metric : in_order(report.first)) {
+      values[metrics::name(metric)] = row.values[metric];  // null where it is no number
     }
     rows.push_back({{"region", row.region.empty() ? Json(nullptr) : Json(row.region)},
                     {"pixels", row.values.pixels},

@@ -63,7 +63,7 @@ study::RenderTime read_render_time(const std::vector<std::string>& paths) {
   return {mean.render / count, mean.dump / count};
 }
 
-void keep_progress(study::Convergence& convergence, core::Progress& progress) {
+void keep_progress(study::ConvergeRequest& convergence, core::Progress& progress) {
   convergence.on_progress = [&progress](std::uint64_t done, std::uint64_t total) {
     progress.advance(done, total);
   };
@@ -84,7 +84,7 @@ void refuse_to_overwrite(const std::string& folder) {
 
 void run_dumps(const ConvergeOptions& options, filter::TermSet asked) {
   std::vector<filter::Parameters> sets = all_sets(options.lists);
-  const study::Dump dump(options.inputs.front());
+  const run::Dump dump(options.inputs.front());
   std::vector<std::string> notes;
   const StudyFolder folder(options.study, dump, notes);
   refuse_to_overwrite(folder.path());
@@ -94,24 +94,24 @@ void run_dumps(const ConvergeOptions& options, filter::TermSet asked) {
   study::ConvergeReport report;
   report.version = kVersion;
   if (!options.render_figures.empty()) report.time = read_render_time(options.render_figures);
-  const std::span<const study::Metric> measured =
-      options.all_metrics ? std::span<const study::Metric>(study::kAllMetrics)
-                          : std::span<const study::Metric>(study::kPixelMetrics);
-  const study::Reference reference(folder.reference_picture(), folder.width(),
-                                   folder.metric_options(), measured);
+  const std::span<const metrics::Metric> measured =
+      options.all_metrics ? std::span<const metrics::Metric>(metrics::kAllMetrics)
+                          : std::span<const metrics::Metric>(metrics::kPixelMetrics);
+  const metrics::Reference reference(folder.reference_picture(), folder.width(),
+                                     folder.metric_options(), measured);
   report.measured = measured;
   report.metrics = study::describe_metrics(measured, folder.metric_options());
   report.reference = study::describe_reference(options.study.reference, folder.reference_picture());
   for (const std::string& path : options.inputs) {
-    const study::Dump replicate(path);
+    const run::Dump replicate(path);
     fit_terms(replicate, sets, asked, notes);
     report.inputs.push_back(
         study::describe_input(replicate, {0, folder.passes().last}, folder.camera()));
   }
 
-  study::Convergence convergence;
+  study::ConvergeRequest convergence;
   convergence.sets = sets;
-  convergence.n = study::powers_up_to(study::last_pass(dump, folder.passes()));
+  convergence.n = study::powers_up_to(run::last_pass(dump, folder.passes()));
   convergence.camera = folder.camera();
   convergence.with_times = !options.no_times;
   convergence.max_memory = options.study.max_memory;
@@ -220,10 +220,10 @@ bool run_analytic(const ConvergeOptions& options, study::AnalyticScene which,
   const Replicates replicates(scene, folder);
   const std::vector<std::string>& dumps = replicates.dumps();
   const std::vector<Rgb> picture = scene.reference();
-  study::MetricOptions metric_options;
-  const study::Reference reference(picture, study::Analytic::kSize, metric_options,
-                                   study::kPixelMetrics);
-  study::Convergence convergence;
+  metrics::MetricOptions metric_options;
+  const metrics::Reference reference(picture, study::Analytic::kSize, metric_options,
+                                     metrics::kPixelMetrics);
+  study::ConvergeRequest convergence;
   convergence.sets = sets;
   convergence.n = study::powers_up_to(kPasses);
   convergence.with_times = false;
@@ -232,11 +232,11 @@ bool run_analytic(const ConvergeOptions& options, study::AnalyticScene which,
   keep_progress(convergence, progress);
   study::ConvergeReport report;
   report.version = kVersion;
-  report.measured = study::kPixelMetrics;
-  report.metrics = study::describe_metrics(study::kPixelMetrics, metric_options);
+  report.measured = metrics::kPixelMetrics;
+  report.metrics = study::describe_metrics(metrics::kPixelMetrics, metric_options);
   report.reference = study::describe_reference("closed form", picture);
   for (const std::string& path : dumps) {
-    report.inputs.push_back(study::describe_input(study::Dump(path), {}, 0));
+    report.inputs.push_back(study::describe_input(run::Dump(path), {}, 0));
   }
   report.series = study::converge(dumps, reference, picture, convergence);
   progress.finish();

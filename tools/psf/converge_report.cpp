@@ -13,7 +13,7 @@
 namespace psf::tools {
 namespace {
 
-constexpr study::Metric kError = study::Metric::rel_mse;
+constexpr metrics::Metric kError = metrics::Metric::rel_mse;
 
 // "1.2e-3", or "-" where there is none.
 std::string number(double value, const char* format = "{:.3g}") {
@@ -55,7 +55,7 @@ const study::SpeedUp* find(const study::ConvergeReport& report, std::size_t seri
 void print_series(const study::ConvergeReport& report, std::size_t series) {
   const bool replicates = report.inputs.size() > 1;
   const bool filtered = series > 0;
-  fmt::print("{}\n{:>6} {:>9} {:>6}", title(report, series), "n", study::name(kError), "slope");
+  fmt::print("{}\n{:>6} {:>9} {:>6}", title(report, series), "n", metrics::name(kError), "slope");
   if (replicates) {
     fmt::print(" {:>30} {:>6} {:>13} {:>30} {:>6} {:>6}", "bias^2 [95%]", "slope", "smooth, edge",
                "variance [95%]", "slope", "theory");
@@ -106,7 +106,7 @@ void print_series(const study::ConvergeReport& report, std::size_t series) {
 // What one looks for: a line a set, after all passes.
 void print_summary(const study::ConvergeReport& report) {
   fmt::print("after {} passes\n{:>9} {:>10} {:>10} {:>8} {:>10} {:>11}\n",
-             report.series[0].points.back().n, study::name(kError), "bias^2", "variance", "M",
+             report.series[0].points.back().n, metrics::name(kError), "bias^2", "variance", "M",
              "equal time", "equal error");
   for (std::size_t series = 0; series < report.series.size(); ++series) {
     const study::ConvergePoint& point = report.series[series].points.back();

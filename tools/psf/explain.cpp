@@ -13,12 +13,12 @@
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "explain/ply.h"
 #include "explain_report.h"
 #include "filter_options.h"
 #include "notes.h"
 #include "option_values.h"
 #include "pass_range.h"
-#include "study/explain/explain_ply.h"
 #include "verbs.h"
 
 namespace psf::tools {
@@ -32,7 +32,7 @@ struct ExplainOptions : ParameterOptions {
   bool all = false;
 };
 
-std::size_t camera_of(const ExplainOptions& options, const study::Dump& dump) {
+std::size_t camera_of(const ExplainOptions& options, const run::Dump& dump) {
   const auto& cameras = dump.metadata().cameras;
   std::string names;
   for (std::size_t k = 0; k < cameras.size(); ++k) {
@@ -48,11 +48,11 @@ std::size_t camera_of(const ExplainOptions& options, const study::Dump& dump) {
                                 options.camera, names));
 }
 
-study::ExplainRequest request_of(const ExplainOptions& options) {
+explain::ExplainRequest request_of(const ExplainOptions& options) {
   if (options.pixel.empty() == !options.path.has_value()) {
     throw Error(ErrorCode::usage, "say what to explain: --pixel X,Y or --path I");
   }
-  study::ExplainRequest request;
+  explain::ExplainRequest request;
   request.parameters = parameters_of(options);
   request.passes = parse_passes(options.passes);
   request.path = options.path;
@@ -72,9 +72,9 @@ study::ExplainRequest request_of(const ExplainOptions& options) {
 
 void run(const ExplainOptions& options, filter::TermSet asked) {
   const core::ThreadLimit threads(options.common.threads);
-  study::ExplainRequest request = request_of(options);
+  explain::ExplainRequest request = request_of(options);
   check_files({options.input}, {options.common.json, options.ply});
-  const study::Dump dump(options.input);
+  const run::Dump dump(options.input);
   request.camera = camera_of(options, dump);
   std::vector<std::string> notes;
   fit_terms(dump, {&request.parameters, 1}, asked, notes);
@@ -84,9 +84,9 @@ void run(const ExplainOptions& options, filter::TermSet asked) {
   request.on_progress = [&bar](std::uint64_t done, std::uint64_t total) {
     bar.advance(done, total);
   };
-  const study::Explanation explanation = study::explain(dump, request);
+  const explain::ExplainResult explanation = explain::explain(dump, request);
   bar.finish();
-  const study::Whence whence = study::whence(explanation);
+  const explain::Attribution whence = explain::attribute(explanation);
   const ExplainReport report{dump, explanation, whence,
                              options.all ? std::numeric_limits<std::size_t>::max() : options.top,
                              options.all};
@@ -94,7 +94,7 @@ void run(const ExplainOptions& options, filter::TermSet asked) {
   if (!options.common.json.empty()) {
     core::write_json_file(options.common.json, explain_json(report), -1);
   }
-  if (!options.ply.empty()) static_cast<void>(study::write_ply(explanation, whence, options.ply));
+  if (!options.ply.empty()) static_cast<void>(explain::write_ply(explanation, whence, options.ply));
 }
 
 }  // namespace

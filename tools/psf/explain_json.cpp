@@ -28,8 +28,8 @@ class Writer {
   explicit Writer(const ExplainReport& report) : report_(report), e_(report.explanation) {}
 
   [[nodiscard]] Json all() const {
-    const study::ExplainRequest& request = e_.request;
-    const study::Whence& w = report_.whence;
+    const explain::ExplainRequest& request = e_.request;
+    const explain::Attribution& w = report_.whence;
     Json json = {{"input", report_.dump.reader().path()}, {"uuid", report_.dump.reader().uuid()}};
     for (const auto& [name, value] : filter::describe(request.parameters)) {
       json["parameters"][name] = value;
@@ -45,7 +45,7 @@ class Writer {
     json["value"] = value(w.pixel);
     json["candidates"] = w.candidates;
     json["refusals"] = Json::array();
-    for (const study::TermRefusals& of : w.refusals) {
+    for (const explain::TermRefusals& of : w.refusals) {
       json["refusals"].push_back({{"term", filter::kTermNames[of.term]},
                                   {"refused", of.refused},
                                   {"alone", of.alone},
@@ -62,7 +62,7 @@ class Writer {
   }
 
  private:
-  [[nodiscard]] Json value(const study::PixelSums& pixel) const {
+  [[nodiscard]] Json value(const explain::PixelSums& pixel) const {
     const bool own = pixel.own.has_value();
     return {
         {"paths", pixel.paths},
@@ -78,7 +78,7 @@ class Writer {
 
   [[nodiscard]] Json remedies() const {
     Json list = Json::array();
-    for (const study::Remedy& remedy : report_.whence.remedies) {
+    for (const explain::Remedy& remedy : report_.whence.remedies) {
       list.push_back({{"term", filter::kTermNames[remedy.term]},
                       {"threshold", remedy.threshold ? Json(*remedy.threshold) : Json(nullptr)},
                       {"refuses_of_leak", remedy.leaking},
@@ -90,7 +90,7 @@ class Writer {
 
   [[nodiscard]] Json kinds() const {
     Json list = Json::array();
-    for (const study::KindShare& kind : report_.whence.kinds) {
+    for (const explain::KindShare& kind : report_.whence.kinds) {
       list.push_back({{"apart_by", names(kind.terms)},
                       {"pairs", kind.pairs},
                       {"of_leak", kind.leaking},
@@ -101,7 +101,7 @@ class Writer {
 
   [[nodiscard]] Json pixels() const {
     Json list = Json::array();
-    for (const study::PixelShare& pixel : report_.whence.pixels) {
+    for (const explain::PixelShare& pixel : report_.whence.pixels) {
       const std::uint32_t width = e_.widths[pixel.camera];
       list.push_back({{"camera", pixel.camera},
                       {"pixel", {pixel.pixel % width, pixel.pixel / width}},
@@ -122,7 +122,7 @@ class Writer {
   [[nodiscard]] Json sources() const {
     Json list = Json::array();
     for (std::size_t k = 0; k < report_.whence.sources.size(); ++k) {
-      const study::SourceShare& source = report_.whence.sources[k];
+      const explain::SourceShare& source = report_.whence.sources[k];
       Json row = vertex(source.vertex);
       row["leak"] = k < report_.whence.leak;
       row["paths"] = source.paths;
@@ -135,7 +135,7 @@ class Writer {
   }
 
   [[nodiscard]] Json apart(std::size_t pair) const {
-    const study::PairFeatures f = study::features_of(e_, e_.pairs[pair]);
+    const explain::PairFeatures f = explain::features_of(e_, e_.pairs[pair]);
     return {{"angle", number(f.angle)},
             {"reflectance", number(f.reflectance)},
             {"lights", f.lights ? Json(*f.lights) : Json(nullptr)},
@@ -160,7 +160,7 @@ class Writer {
 
   // A record with all the channels that were read.
   [[nodiscard]] Json vertex(std::uint32_t i) const {
-    const study::BlockRecords& v = e_.vertices;
+    const run::BlockRecords& v = e_.vertices;
     Json row = {{"record", record(i)}, {"pass", e_.pass[i]}, {"pixel", pixel(i)}};
     const auto put = [&row, i](const char* name, const auto& column, auto make) {
       if (!column.empty()) row[name] = make(column[i]);
@@ -188,7 +188,7 @@ class Writer {
   }
 
   [[nodiscard]] Json path(std::size_t p) const {
-    const study::ExplainedPath& of = e_.paths[p];
+    const explain::ExplainedPath& of = e_.paths[p];
     Json row = vertex(of.vertex);
     row["fate"] = kFateNames[static_cast<std::size_t>(of.fate)];
     row["radius"] = number(double{of.radius});
@@ -201,15 +201,15 @@ class Writer {
       n[column] = Json::array();
     }
     for (std::size_t k = of.begin; k < of.end; ++k) {
-      const study::ExplainedPair& pair = e_.pairs[k];
+      const explain::ExplainedPair& pair = e_.pairs[k];
       n["record"].push_back(record(pair.vertex));
       n["pass"].push_back(e_.pass[pair.vertex]);
       n["pixel"].push_back(pixel(pair.vertex));
       n["distance"].push_back(pair.distance);
       n["contribution"].push_back(triple(e_.vertices.contribution[pair.vertex]));
       n["share"].push_back(pair.averaged
-                               ? triple(study::share_of(e_, pair, report_.whence.pixel.paths))
-                               : triple(study::Colour(0, 0, 0)));
+                               ? triple(explain::share_of(e_, pair, report_.whence.pixel.paths))
+                               : triple(explain::Colour(0, 0, 0)));
       n["averaged"].push_back(pair.averaged);
       n["in_ball"].push_back(pair.in_ball);
       n["refused_by"].push_back(pair.refusers);
@@ -218,7 +218,7 @@ class Writer {
   }
 
   const ExplainReport& report_;
-  const study::Explanation& e_;
+  const explain::ExplainResult& e_;
 };
 
 }  // namespace

@@ -17,8 +17,8 @@
 namespace psf::tools {
 namespace {
 
-using study::Colour;
-using study::luminance;
+using explain::Colour;
+using explain::luminance;
 
 // A firefly is worth a word from here on, and a standard error says something.
 constexpr double kDominates = 0.2, kDominatesOwn = 0.5;
@@ -53,7 +53,7 @@ class Overview {
                         e_.request.path ? fmt::format("path {}, ", *e_.request.path) : "", x, y,
                         camera.empty() ? "" : fmt::format(" of camera \"{}\"", shown(camera)));
     paths();
-    for (const study::ExplainedPath& path : e_.paths) {
+    for (const explain::ExplainedPath& path : e_.paths) {
       if (has_vertex(path)) own_.push_back(&path);
     }
     if (own_.empty()) {
@@ -89,7 +89,7 @@ class Overview {
   void vertices() {
     Vec3 low = v_.position[own_[0]->vertex], high = low;
     Range distance;
-    for (const study::ExplainedPath* path : own_) {
+    for (const explain::ExplainedPath* path : own_) {
       const Vec3& x = v_.position[path->vertex];
       for (int axis = 0; axis < 3; ++axis) {
         low[axis] = std::min(low[axis], x[axis]);
@@ -108,7 +108,7 @@ class Overview {
     const std::uint32_t first = own_[0]->vertex;
     double cosine = 1, reflectance = 0;
     std::set<std::uint32_t> materials, lights;
-    for (const study::ExplainedPath* path : own_) {
+    for (const explain::ExplainedPath* path : own_) {
       const std::uint32_t i = path->vertex;
       if (!v_.normal.empty()) {
         cosine = std::min(cosine, double{dot(v_.normal[first], v_.normal[i])});
@@ -154,7 +154,7 @@ class Overview {
   void balls() {
     Range radius;
     double neighbors = 0, in_ball = 0;
-    for (const study::ExplainedPath* path : own_) {
+    for (const explain::ExplainedPath* path : own_) {
       radius.add(path->radius);
       neighbors += path->neighbors;
       in_ball += path->in_ball;
@@ -169,7 +169,7 @@ class Overview {
   }
 
   void values() {
-    const study::PixelSums& pixel = report_.whence.pixel;
+    const explain::PixelSums& pixel = report_.whence.pixel;
     if (pixel.paths == 0) return line("filtered", "no path is part of it");
     line("filtered", colour(pixel.filtered));
     const auto& sources = report_.whence.sources;
@@ -194,7 +194,7 @@ class Overview {
     }
     line("difference", text);
     const double filtered = luminance(pixel.filtered);
-    for (const study::SourceShare& source : sources) {
+    for (const explain::SourceShare& source : sources) {
       if (filtered > 0 && sources.size() > 1 && luminance(source.share) > kDominates * filtered) {
         line("", fmt::format("source {} alone is {} of the filtered pixel",
                              e_.record[source.vertex], percent(luminance(source.share), filtered)));
@@ -203,9 +203,9 @@ class Overview {
   }
 
   const ExplainReport& report_;
-  const study::Explanation& e_;
-  const study::BlockRecords& v_;
-  std::vector<const study::ExplainedPath*> own_;  // with a vertex
+  const explain::ExplainResult& e_;
+  const run::BlockRecords& v_;
+  std::vector<const explain::ExplainedPath*> own_;  // with a vertex
   std::string text_;
 };
 

@@ -4,15 +4,15 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "study/dump.h"
-#include "study/explain/explain_whence.h"
+#include "explain/attribution.h"
+#include "run/dump.h"
 
 namespace psf::tools {
 
 struct ExplainReport {
-  const study::Dump& dump;
-  const study::Explanation& explanation;
-  const study::Whence& whence;
+  const run::Dump& dump;
+  const explain::ExplainResult& explanation;
+  const explain::Attribution& whence;
   std::size_t top = 5;    // most rows of a table
   bool vertices = false;  // show all values of each path's vertex
 };

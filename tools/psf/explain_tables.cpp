@@ -14,7 +14,7 @@
 namespace psf::tools {
 namespace {
 
-using study::luminance;
+using explain::luminance;
 
 // What tells a source from the vertex it is averaged into, by term.
 constexpr std::array<const char*, filter::kTermCount> kApart = {
@@ -65,7 +65,7 @@ class Tables {
     say("\n{:<34}{:>12}{:>8}{:>12}{:>26}\n",
         counted(w_.candidates, "pair", "pairs") + " in the balls", "refused", "", "it alone",
         "luminance without it");
-    for (const study::TermRefusals& of : w_.refusals) {
+    for (const explain::TermRefusals& of : w_.refusals) {
       say("  {:<32}{:>12}{:>8}{:>12}{:>26.4g}\n", term_text(of.term), with_commas(of.refused),
           percent(of.refused, w_.candidates), with_commas(of.alone), luminance(of.without));
     }
@@ -89,7 +89,7 @@ class Tables {
     say("  {:<44}{:>10}{:>12}{:>12}{:>14}\n", "told from the vertex by", "pairs", "of those",
         "of others", "adds");
     for (std::size_t k = 0; k < rows_of(w_.kinds.size()); ++k) {
-      const study::KindShare& kind = w_.kinds[k];
+      const explain::KindShare& kind = w_.kinds[k];
       say("  {:<44}{:>10}{:>12}{:>12}{:>+14.4g}\n", kind_text(kind.terms), with_commas(kind.pairs),
           percent(kind.leaking, w_.leak_pairs), percent(kind.pairs - kind.leaking, w_.other_pairs),
           luminance(kind.excess));
@@ -107,7 +107,7 @@ class Tables {
   void remedies() {
     if (w_.leak == 0 || w_.leak_pairs == 0) return;
     bool told = false;
-    for (const study::Remedy& remedy : w_.remedies) {
+    for (const explain::Remedy& remedy : w_.remedies) {
       const double gain = remedy.gain(w_.leak_pairs, w_.other_pairs);
       if (gain < kWorthARow) continue;
       if (!std::exchange(told, true)) {
@@ -133,7 +133,7 @@ class Tables {
         "of those", "adds", "angle", "albedo", "lights", "material", "plane");
     const auto [x, y] = pixel_of(e_, e_.paths.front().vertex);
     for (std::size_t k = 0; k < rows_of(w_.pixels.size()); ++k) {
-      const study::PixelShare& of = w_.pixels[k];
+      const explain::PixelShare& of = w_.pixels[k];
       const std::uint32_t width = e_.widths[of.camera];
       const std::uint32_t from_x = of.pixel % width, from_y = of.pixel / width;
       std::string name = fmt::format("{},{}", from_x, from_y);
@@ -154,9 +154,9 @@ class Tables {
     say("\n{:<12}{:>6}{:>10}{:>11}{:>8}{:>10}{:>8}{:>8}{:>9}{:>10}{:>8}\n", "source", "pass",
         "pixel", "adds", "share", "distance", "angle", "albedo", "lights", "material", "plane");
     for (std::size_t k = 0; k < rows_of(w_.sources.size()); ++k) {
-      const study::SourceShare& source = w_.sources[k];
-      const study::ExplainedPair& pair = e_.pairs[source.pair];
-      const study::PairFeatures f = study::features_of(e_, pair);
+      const explain::SourceShare& source = w_.sources[k];
+      const explain::ExplainedPair& pair = e_.pairs[source.pair];
+      const explain::PairFeatures f = explain::features_of(e_, pair);
       const auto [x, y] = pixel_of(e_, source.vertex);
       say("  {:<10}{:>6}{:>10}{:>+11.3g}{:>8}{:>10.3g}{:>8}{:>8}{:>9}{:>10}{:>8}\n",
           e_.record[source.vertex], e_.pass[source.vertex], fmt::format("{},{}", x, y),
@@ -168,8 +168,8 @@ class Tables {
     rest(w_.sources.size());
   }
   // What the source sees and the vertex does not, or the other way round.
-  [[nodiscard]] std::string lights(const study::ExplainedPair& pair,
-                                   const study::PairFeatures& features) const {
+  [[nodiscard]] std::string lights(const explain::ExplainedPair& pair,
+                                   const explain::PairFeatures& features) const {
     if (!features.lights) return "-";
     if (*features.lights == 0) return "same";
     const std::uint32_t more = *features.lights & v_.visibility[pair.vertex];
@@ -181,8 +181,8 @@ class Tables {
   }
 
   // What the source is of, where that is another than the vertex is of.
-  [[nodiscard]] std::string material(const study::ExplainedPair& pair,
-                                     const study::PairFeatures& features) const {
+  [[nodiscard]] std::string material(const explain::ExplainedPair& pair,
+                                     const explain::PairFeatures& features) const {
     if (!features.material) return "-";
     if (!*features.material) return "same";
     const std::string name = material_name(report_.dump, v_.material[pair.vertex]);
@@ -195,7 +195,7 @@ class Tables {
         "neighbors", "in ball", "alpha", "c", "c_bar", "u");
     const auto light = [](const Rgb& c) { return fmt::format("{:.4g}", psf::luminance(c)); };
     for (std::size_t p = 0; p < rows_of(e_.paths.size()); ++p) {
-      const study::ExplainedPath& path = e_.paths[p];
+      const explain::ExplainedPath& path = e_.paths[p];
       const std::uint32_t i = path.vertex;
       const std::string u = v_.unfiltered.empty() ? "0" : light(v_.unfiltered[i]);
       const char* fate = kFateNames[static_cast<std::size_t>(path.fate)];
@@ -203,7 +203,7 @@ class Tables {
         say("  {:<10}{:>6}{:>23}{:>54}\n", e_.record[i], e_.pass[i], fate, u);
         continue;
       }
-      const bool averaged = path.fate == study::PathFate::averaged;
+      const bool averaged = path.fate == explain::PathFate::averaged;
       say("  {:<10}{:>6}{:>12.4g}{:>11}{:>10}{:>11}{:>11}{:>11}{:>11}\n", e_.record[i], e_.pass[i],
           path.radius, averaged ? with_commas(path.neighbors) : fate, with_commas(path.in_ball),
           light(v_.throughput[i]), e_.is_source[i] ? light(v_.contribution[i]) : "none",
@@ -212,7 +212,7 @@ class Tables {
     }
     rest(e_.paths.size());
   }
-  void vertex(std::uint32_t i, const study::ExplainedPath& path) {
+  void vertex(std::uint32_t i, const explain::ExplainedPath& path) {
     say("    x {}", point(v_.position[i]));
     if (!v_.normal.empty()) say(" n {}", point(v_.normal[i]));
     if (!v_.reflectance.empty()) say(" rho {}", point(v_.reflectance[i]));
@@ -223,9 +223,9 @@ class Tables {
   }
 
   const ExplainReport& report_;
-  const study::Explanation& e_;
-  const study::Whence& w_;
-  const study::BlockRecords& v_;
+  const explain::ExplainResult& e_;
+  const explain::Attribution& w_;
+  const run::BlockRecords& v_;
   std::string text_;
 };
 

@@ -26,13 +26,13 @@ inline std::string percent(std::uint64_t part, std::uint64_t all) {
   return percent(static_cast<double>(part), static_cast<double>(all));
 }
 
-inline bool has_vertex(const study::ExplainedPath& path) {
-  return path.fate != study::PathFate::no_vertex && path.fate != study::PathFate::left_out;
+inline bool has_vertex(const explain::ExplainedPath& path) {
+  return path.fate != explain::PathFate::no_vertex && path.fate != explain::PathFate::left_out;
 }
 
-inline std::pair<std::uint32_t, std::uint32_t> pixel_of(const study::Explanation& explanation,
+inline std::pair<std::uint32_t, std::uint32_t> pixel_of(const explain::ExplainResult& explanation,
                                                         std::uint32_t vertex) {
-  const study::BlockRecords& v = explanation.vertices;
+  const run::BlockRecords& v = explanation.vertices;
   const std::uint32_t width = explanation.widths[v.camera.empty() ? 0 : v.camera[vertex]];
   return {v.pixel[vertex] % width, v.pixel[vertex] / width};
 }
@@ -46,19 +46,19 @@ inline std::string shown(std::string text) {
 }
 
 // The name of a material; empty where the dump has no name for it.
-inline std::string material_name(const study::Dump& dump, std::uint32_t material) {
+inline std::string material_name(const run::Dump& dump, std::uint32_t material) {
   const auto& names = dump.metadata().materials;
   return material < names.size() ? shown(names[material]) : "";
 }
 // A material as text: "wall (3)", or "3" where it has no name.
-inline std::string material_text(const study::Dump& dump, std::uint32_t material) {
+inline std::string material_text(const run::Dump& dump, std::uint32_t material) {
   const std::string name = material_name(dump, material);
   return name.empty() ? fmt::format("{}", material) : fmt::format("{} ({})", name, material);
 }
 
 // The lights of some visibility bits, by name, or by the bit's number where the bit stands for
 // several lights or has no name. Light l has bit l mod 32.
-inline std::string lights_text(const study::Dump& dump, std::uint32_t bits) {
+inline std::string lights_text(const run::Dump& dump, std::uint32_t bits) {
   std::string text;
   const auto& names = dump.metadata().lights;
   for (std::size_t bit = 0; bit < 32; ++bit) {

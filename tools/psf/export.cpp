@@ -1,5 +1,5 @@
 // psf export: writes a dump in the formats of other programs.
-#include "study/export/export.h"
+#include "export/export.h"
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
-#include "formats/reader.h"
+#include "formats/read/reader.h"
 #include "option_values.h"
 #include "pass_range.h"
 #include "text.h"
@@ -53,8 +53,8 @@ std::string format_of(const ExportOptions& options) {
                   options.output, extension));
 }
 
-study::PlyOptions ply_options(const ExportOptions& options, const std::string& format) {
-  study::PlyOptions ply;
+exports::PlyOptions ply_options(const ExportOptions& options, const std::string& format) {
+  exports::PlyOptions ply;
   if (format != "ply" && !(options.colour.empty() && options.exposure.empty())) {
     refuse(options.output + ": --colour and --exposure are for point clouds (.ply) alone");
   }
@@ -72,7 +72,7 @@ study::PlyOptions ply_options(const ExportOptions& options, const std::string& f
 }
 
 nlohmann::ordered_json to_json(const ExportOptions& options, const std::string& format,
-                               const study::ExportOutcome& outcome, double seconds) {
+                               const exports::ExportResult& outcome, double seconds) {
   return {{"file", options.input},
           {"format", format},
           {"records", outcome.records},
@@ -87,7 +87,7 @@ nlohmann::ordered_json to_json(const ExportOptions& options, const std::string& 
 }
 
 void print(const ExportOptions& options, const std::string& format,
-           const study::ExportOutcome& outcome) {
+           const exports::ExportResult& outcome) {
   const bool points = format == "ply";
   fmt::print("{}: {} of {}, {:.1f} MB", options.output,
              points ? counted(outcome.written, "point", "points")
@@ -104,8 +104,8 @@ void run(const ExportOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const core::ThreadLimit threads(options.common.threads);
   const std::string format = format_of(options);
-  const study::PlyOptions ply = ply_options(options, format);
-  study::ExportSelection selection;
+  const exports::PlyOptions ply = ply_options(options, format);
+  exports::ExportSelection selection;
   selection.channels = options.channels;
   selection.passes = parse_passes(options.passes);
   selection.every = options.every;
@@ -114,13 +114,13 @@ void run(const ExportOptions& options) {
 
   const formats::Reader reader(options.input);
   core::Progress bar("export", options.common.quiet);
-  const study::ExportProgress progress = [&bar](std::uint64_t done, std::uint64_t total) {
+  const exports::ExportProgress progress = [&bar](std::uint64_t done, std::uint64_t total) {
     bar.advance(done, total);
   };
-  const study::ExportOutcome outcome =
-      format == "npy"   ? study::export_npy(reader, selection, options.output, progress)
-      : format == "csv" ? study::export_csv(reader, selection, options.output, progress)
-                        : study::export_ply(reader, selection, ply, options.output, progress);
+  const exports::ExportResult outcome =
+      format == "npy"   ? exports::export_npy(reader, selection, options.output, progress)
+      : format == "csv" ? exports::export_csv(reader, selection, options.output, progress)
+                        : exports::export_ply(reader, selection, ply, options.output, progress);
   bar.finish();
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

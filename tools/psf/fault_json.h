@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "formats/check.h"
+#include "formats/check/check.h"
 
 namespace psf::tools {
 

@@ -19,7 +19,7 @@
 #include "core/standard_streams.h"
 #include "filter_options.h"
 #include "filter_report.h"
-#include "formats/appender.h"
+#include "formats/write/appender.h"
 #include "notes.h"
 #include "pass_range.h"
 #include "picture_names.h"
@@ -37,7 +37,7 @@ constexpr std::chrono::milliseconds kBetweenLooks{200};
 constexpr double kPatience = 5;  // seconds without a writer before it is said
 
 std::vector<std::pair<std::string, std::string>> attributes_of(
-    const study::Dump& dump, const filter::Parameters& parameters) {
+    const run::Dump& dump, const filter::Parameters& parameters) {
   const formats::Metadata& metadata = dump.metadata();
   std::vector<std::pair<std::string, std::string>> attributes = {
       {"psf:version", kVersion},
@@ -53,7 +53,7 @@ std::vector<std::pair<std::string, std::string>> attributes_of(
   return attributes;
 }
 
-std::vector<std::string> camera_names(const study::Dump& dump) {
+std::vector<std::string> camera_names(const run::Dump& dump) {
   std::vector<std::string> names;
   for (const formats::CameraInfo& camera : dump.metadata().cameras) names.push_back(camera.name);
   return names;
@@ -62,7 +62,7 @@ std::vector<std::string> camera_names(const study::Dump& dump) {
 // Writes the pictures of a run, every camera under every name.
 class PictureWriter {
  public:
-  PictureWriter(const FilterOptions& options, const study::Dump& dump, const study::FilterRun& run)
+  PictureWriter(const FilterOptions& options, const run::Dump& dump, const run::FilterRequest& run)
       : names_(options.outputs, camera_names(dump)),
         attributes_(attributes_of(dump, run.parameters)),
         cameras_(dump.metadata().cameras),
@@ -76,7 +76,7 @@ class PictureWriter {
   // Writes the pictures of the first `passes` passes and returns their names. `snapshot`: number
   // for the names; 0: the final pictures.
   std::vector<std::string> write(std::uint64_t snapshot, std::uint64_t passes,
-                                 std::span<const study::CameraPictures> pictures) {
+                                 std::span<const run::CameraPictures> pictures) {
     const auto start = Clock::now();
     std::vector<std::string> written;
     for (std::size_t camera = 0; camera < pictures.size(); ++camera) {
@@ -104,9 +104,8 @@ class PictureWriter {
 };
 
 // The whole dump; returns the names of the files.
-std::vector<std::string> filter_all(const study::Dump& dump, study::FilterRun& run,
-                                    PictureWriter& writer, bool quiet,
-                                    study::FilterOutcome& outcome) {
+std::vector<std::string> filter_all(const run::Dump& dump, run::FilterRequest& run,
+                                    PictureWriter& writer, bool quiet, run::FilterResult& outcome) {
   std::vector<std::string> written;
   const auto append = [&](std::vector<std::string> names) {
     written.insert(written.end(), names.begin(), names.end());
@@ -115,23 +114,23 @@ std::vector<std::string> filter_all(const study::Dump& dump, study::FilterRun& r
   run.on_progress = [&progress](std::uint64_t done, std::uint64_t total) {
     progress.advance(done, total);
   };
-  run.on_snapshot = [&](std::uint64_t passes, std::span<const study::CameraPictures> pictures) {
+  run.on_snapshot = [&](std::uint64_t passes, std::span<const run::CameraPictures> pictures) {
     append(writer.write(passes, passes, pictures));
   };
-  outcome = study::filter_dump(dump, run);
+  outcome = run::filter_dump(dump, run);
   progress.finish();
   append(writer.write(0, outcome.passes, outcome.pictures));
   return written;
 }
 
 // Whatever is committed, until the dump is closed.
-std::vector<std::string> filter_growing(study::Dump& dump, const study::FilterRun& run,
+std::vector<std::string> filter_growing(run::Dump& dump, const run::FilterRequest& run,
                                         PictureWriter& writer, bool quiet,
-                                        study::FilterOutcome& outcome) {
+                                        run::FilterResult& outcome) {
   std::vector<std::string> written;
   auto last_seen = Clock::now();
   bool told = false;
-  const auto on_pictures = [&](const study::FilterOutcome& now) {
+  const auto on_pictures = [&](const run::FilterResult& now) {
     written = writer.write(0, now.passes, now.pictures);
     if (!quiet) {
       core::say(
@@ -152,7 +151,7 @@ std::vector<std::string> filter_growing(study::Dump& dump, const study::FilterRu
           dump.reader().path()));
     }
   };
-  outcome = study::follow_dump(dump, run, on_pictures, wait);
+  outcome = run::follow_dump(dump, run, on_pictures, wait);
   return written;
 }
 
@@ -166,8 +165,8 @@ void wait_for_first_pass(const std::string& path) {
 }
 
 // Layers that were asked for by name and that the dump has no channel for.
-void check_layers(const study::Dump& dump, const std::string& text,
-                  const study::PictureLayers& layers) {
+void check_layers(const run::Dump& dump, const std::string& text,
+                  const run::PictureLayers& layers) {
   const auto need = [&](const char* layer, const char* channel) {
     if (dump.reader().head().find(channel)) return;
     throw Error(ErrorCode::bad_input,
@@ -183,7 +182,7 @@ void run(const FilterOptions& options, filter::TermSet asked) {
   const auto start = Clock::now();
   keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
-  study::FilterRun run;
+  run::FilterRequest run;
   FilterOptions chosen = options;
   if (!options.tuned.empty()) {
     read_tuned(options.tuned, chosen);
@@ -195,7 +194,7 @@ void run(const FilterOptions& options, filter::TermSet asked) {
   run.max_memory = options.max_memory;
   run.with_noise = !options.common.json.empty();
   if (options.follow) wait_for_first_pass(options.input);
-  study::Dump dump(options.input);
+  run::Dump dump(options.input);
   std::vector<std::string> notes;
   fit_terms(dump, {&run.parameters, 1}, asked, notes);
   check_layers(dump, options.layers, run.layers);
@@ -215,7 +214,7 @@ void run(const FilterOptions& options, filter::TermSet asked) {
                                   : filter_all(dump, run, writer, quiet, report.outcome);
   report.seconds_write = writer.seconds();
   report.seconds = seconds_since(start);
-  report.peak = study::peak_memory();
+  report.peak = run::peak_memory();
   print_report(report);
   if (!options.common.json.empty()) {
     core::write_json_file(options.common.json, to_json(report));

@@ -13,7 +13,7 @@
 #include "core/standard_streams.h"
 #include "filter/parameters_text.h"
 #include "pass_range.h"
-#include "study/missing_terms.h"
+#include "run/missing_terms.h"
 
 namespace psf::tools {
 namespace {
@@ -71,9 +71,9 @@ filter::TermSet asked_terms(const CLI::App& command) {
   return asked;
 }
 
-void fit_terms(const study::Dump& dump, std::span<filter::Parameters> sets, filter::TermSet asked,
+void fit_terms(const run::Dump& dump, std::span<filter::Parameters> sets, filter::TermSet asked,
                std::vector<std::string>& notes) {
-  const std::string note = study::switch_off_missing(dump, sets, asked);
+  const std::string note = run::switch_off_missing(dump, sets, asked);
   for (const filter::Parameters& set : sets) {
     static_cast<void>(dump.select(set, false));  // throws where what was asked for is missing
   }
@@ -122,9 +122,9 @@ std::vector<std::uint64_t> snapshots_of(const std::string& text, std::uint64_t p
   return list;
 }
 
-study::PictureLayers layers_of(const std::string& text) {
+run::PictureLayers layers_of(const std::string& text) {
   if (text == "all") return {};
-  study::PictureLayers layers = {false, false, false, false, false};
+  run::PictureLayers layers = {false, false, false, false, false};
   if (text == "none") return layers;
   const std::pair<std::string_view, bool*> names[] = {{"unfiltered-input", &layers.unfiltered},
                                                       {"neighbors", &layers.neighbors},

@@ -12,8 +12,8 @@
 #include "filter/parameters.h"
 #include "filter/radius.h"
 #include "filter/weights.h"
-#include "study/dump.h"
-#include "study/pictures.h"
+#include "run/dump.h"
+#include "run/pictures.h"
 
 namespace psf::tools {
 
@@ -45,10 +45,10 @@ struct FilterOptions : ParameterOptions {
 // Switches off, in all sets, the terms that are not `asked` for and whose channel the dump lacks.
 // Adds a remark about them to `notes`, to be printed when everything is checked, since an error
 // must be the only line.
-void fit_terms(const study::Dump& dump, std::span<filter::Parameters> sets, filter::TermSet asked,
+void fit_terms(const run::Dump& dump, std::span<filter::Parameters> sets, filter::TermSet asked,
                std::vector<std::string>& notes);
 // The layers that `text` names: a list, "all" or "none". Throws Error{usage} for an unknown name.
-[[nodiscard]] study::PictureLayers layers_of(const std::string& text);
+[[nodiscard]] run::PictureLayers layers_of(const std::string& text);
 
 // Each of these declares options, which write into `options`.
 void add_parameter_options(CLI::App& command, ParameterOptions& options);

@@ -9,7 +9,7 @@
 
 #include "filter/parameters_text.h"
 #include "noise_report.h"
-#include "study/filter_dump.h"
+#include "run/filter_dump.h"
 #include "text.h"
 
 namespace psf::tools {
@@ -17,11 +17,11 @@ namespace psf::tools {
 struct FilterReport {
   std::string input, uuid;
   filter::Parameters parameters;
-  study::FilterOutcome outcome;
+  run::FilterResult outcome;
   std::vector<formats::CameraInfo> cameras;
   std::vector<std::string> written;  // names of the files written
   double seconds_write = 0, seconds = 0;
-  study::PeakMemory peak;
+  run::PeakMemory peak;
 };
 
 // Names and counts that are not 0, as "a 1, b 2", or `otherwise` where all are 0.
@@ -91,7 +91,7 @@ inline void print_report(const FilterReport& report) {
                      listed(filter::kCheckedNames, s.non_finite, "none", with_commas),
                      with_commas(s.without_source), with_commas(report.outcome.overflows)));
   }
-  const study::MemoryEstimate& memory = report.outcome.memory;
+  const run::MemoryEstimate& memory = report.outcome.memory;
   line("memory",
        fmt::format("at most {} expected, with {} of records; {} was the peak, and {} of code",
                    in_mebibytes(memory.total()), memory.blocks == 1 ? "one block" : "two blocks",
@@ -109,7 +109,7 @@ inline void print_report(const FilterReport& report) {
 inline nlohmann::ordered_json to_json(const FilterReport& report) {
   using Json = nlohmann::ordered_json;
   const filter::Statistics& s = report.outcome.statistics;
-  const study::MemoryEstimate& memory = report.outcome.memory;
+  const run::MemoryEstimate& memory = report.outcome.memory;
   Json parameters, refused, non_finite;
   for (const auto& [name, value] : filter::describe(report.parameters)) parameters[name] = value;
   for (std::size_t k = 0; k < filter::kTermCount; ++k)
@@ -159,8 +159,8 @@ inline nlohmann::ordered_json to_json(const FilterReport& report) {
   const bool counted = report.parameters.count_refusals;
   json["candidates"] = counted ? Json(s.candidates) : Json(nullptr);
   json["refused"] = counted ? refused : Json(nullptr);
-  std::vector<study::NoiseShare> noise;
-  for (const study::NoiseMoments& of : report.outcome.noise) noise.push_back(of.share());
+  std::vector<run::NoiseShare> noise;
+  for (const run::NoiseMoments& of : report.outcome.noise) noise.push_back(of.share());
   json["noise"] = noise_json(noise, report.cameras);
   return json;
 }

@@ -16,9 +16,9 @@
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
-#include "formats/metadata.h"
-#include "formats/reader.h"
-#include "formats/statistics.h"
+#include "formats/layout/metadata.h"
+#include "formats/read/reader.h"
+#include "formats/read/statistics.h"
 #include "info_tables.h"
 #include "noise_report.h"
 #include "verbs.h"
@@ -172,14 +172,14 @@ void print_statistics(const formats::Reader& reader, const Statistics& statistic
 
 // The noise shares of each camera, where the file is a dump that can be filtered.
 struct Noise {
-  std::vector<study::NoiseShare> of;
+  std::vector<run::NoiseShare> of;
   std::string unknown;  // the reason why there are no shares
 };
 
 Noise read_noise(const std::string& path) {
   try {
-    const study::Dump dump(path);
-    return {study::noise_shares(dump, {}), ""};
+    const run::Dump dump(path);
+    return {run::noise_shares(dump, {}), ""};
   } catch (const Error& error) {
     if (error.code() != ErrorCode::bad_input) throw;
     return {{}, error.what()};

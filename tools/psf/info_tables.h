@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "formats/metadata.h"
+#include "formats/layout/metadata.h"
 
 namespace psf::tools {
 

@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "option_values.h"
-#include "study/filter_dump.h"
+#include "run/filter_dump.h"
 
 namespace psf::tools {
 
@@ -22,8 +22,8 @@ inline std::uint64_t parse_pass(const std::string& text, const char* option) {
 
 // Parses FIRST:LAST, where LAST is not included and both may be left out. Empty text selects all
 // passes.
-inline study::PassSelection parse_passes(const std::string& text, const char* option = "--passes") {
-  study::PassSelection selection;
+inline run::PassSelection parse_passes(const std::string& text, const char* option = "--passes") {
+  run::PassSelection selection;
   if (text.empty()) return selection;
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) {

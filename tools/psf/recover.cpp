@@ -1,5 +1,5 @@
 // psf recover: saves what is whole in a damaged path-vertex buffer.
-#include "formats/recover.h"
+#include "formats/check/recover.h"
 
 #include <fmt/format.h>
 
@@ -27,7 +27,7 @@ struct RecoverVerb {
   formats::RecoverOptions options;
 };
 
-nlohmann::ordered_json to_json(const RecoverVerb& verb, const formats::RecoverReport& report) {
+nlohmann::ordered_json to_json(const RecoverVerb& verb, const formats::RecoverResult& report) {
   return {{"input", verb.input},
           {"output", verb.output},
           {"nothing_lost", report.nothing_lost()},
@@ -41,7 +41,7 @@ nlohmann::ordered_json to_json(const RecoverVerb& verb, const formats::RecoverRe
           {"losses", faults_to_json(report.losses)}};
 }
 
-void print(const RecoverVerb& verb, const formats::RecoverReport& report) {
+void print(const RecoverVerb& verb, const formats::RecoverResult& report) {
   for (const formats::Fault& fault : report.faults) fmt::print("found {}\n", fault.text());
   for (const formats::Fault& loss : report.losses) fmt::print("lost  {}\n", loss.text());
   fmt::print("{}: saved {} in {} to {}\n", verb.input,
@@ -58,7 +58,7 @@ void run(const RecoverVerb& verb) {
   const core::ThreadLimit threads(verb.common.threads);
   check_files({verb.input}, {verb.output, verb.common.json});
   core::Progress progress("recover", verb.common.quiet);
-  const formats::RecoverReport report =
+  const formats::RecoverResult report =
       formats::recover(verb.input, core::followed(verb.output), verb.options,
                        [&](std::uint64_t done, std::uint64_t total) {
                          core::throw_if_interrupted("nothing is written");

@@ -45,7 +45,7 @@ void add_study_options(CLI::App& command, StudyOptions& options, bool required) 
       ->type_name("SIZE");
 }
 
-std::size_t find_camera(const study::Dump& dump, const std::string& name) {
+std::size_t find_camera(const run::Dump& dump, const std::string& name) {
   const auto& cameras = dump.metadata().cameras;
   if (name.empty() && cameras.size() == 1) return 0;
   std::vector<std::string> names;
@@ -59,11 +59,11 @@ std::size_t find_camera(const study::Dump& dump, const std::string& name) {
                           fmt::join(names, ", ")));
 }
 
-StudyFolder::StudyFolder(const StudyOptions& options, const study::Dump& dump,
+StudyFolder::StudyFolder(const StudyOptions& options, const run::Dump& dump,
                          std::vector<std::string>& notes)
     : options_(options),
       passes_(parse_passes(options.passes)),
-      metric_(study::parse_metric(options.metric)),
+      metric_(metrics::parse_metric(options.metric)),
       camera_(find_camera(dump, options.camera)) {
   options_.metrics.validate();
   film::Picture image =

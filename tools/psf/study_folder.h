@@ -11,16 +11,16 @@
 
 #include "core/vec.h"
 #include "filter/parameters.h"
-#include "study/dump.h"
-#include "study/metrics/metrics.h"
-#include "study/passes.h"
+#include "metrics/metrics.h"
+#include "run/dump.h"
+#include "run/passes.h"
 
 namespace psf::tools {
 
 struct StudyOptions {
   std::string reference, reference_layer, folder, passes, camera;
   std::string metric = "relMSE";  // printed results are ordered by it
-  study::MetricOptions metrics;
+  metrics::MetricOptions metrics;
   bool pictures = false;
   std::optional<std::uint64_t> max_memory;  // bytes
 };
@@ -33,8 +33,7 @@ class StudyFolder {
   // Reads the reference, and adds remarks about it to `notes`. Throws Error{usage} where the camera
   // does not exist, or is not named though there are several, Error{bad_input} where the reference
   // has another size.
-  StudyFolder(const StudyOptions& options, const study::Dump& dump,
-              std::vector<std::string>& notes);
+  StudyFolder(const StudyOptions& options, const run::Dump& dump, std::vector<std::string>& notes);
 
   // Checks that the files `names` in the folder are none of the inputs nor the file of --json
   // (check_files()), and then makes the folder where it is missing.
@@ -42,12 +41,12 @@ class StudyFolder {
             const std::string& json) const;
 
   [[nodiscard]] const std::string& path() const { return options_.folder; }
-  [[nodiscard]] const study::PassSelection& passes() const { return passes_; }
+  [[nodiscard]] const run::PassSelection& passes() const { return passes_; }
   [[nodiscard]] std::size_t camera() const { return camera_; }
   [[nodiscard]] std::size_t width() const { return width_; }
   [[nodiscard]] const std::vector<Rgb>& reference_picture() const { return reference_; }
-  [[nodiscard]] const study::MetricOptions& metric_options() const { return options_.metrics; }
-  [[nodiscard]] study::Metric metric() const { return metric_; }
+  [[nodiscard]] const metrics::MetricOptions& metric_options() const { return options_.metrics; }
+  [[nodiscard]] metrics::Metric metric() const { return metric_; }
 
   // Writes the reference as "reference.exr", unless it was read from that file. With --pictures
   // this is one of the names.
@@ -61,13 +60,13 @@ class StudyFolder {
   [[nodiscard]] std::string file(const std::string& name) const;
 
   StudyOptions options_;
-  study::PassSelection passes_;
-  study::Metric metric_;
+  run::PassSelection passes_;
+  metrics::Metric metric_;
   std::size_t camera_ = 0, width_ = 0, height_ = 0;
   std::vector<Rgb> reference_;
 };
 
 // The number of the camera called `name`, or of the only camera where `name` is empty.
-[[nodiscard]] std::size_t find_camera(const study::Dump& dump, const std::string& name);
+[[nodiscard]] std::size_t find_camera(const run::Dump& dump, const std::string& name);
 
 }  // namespace psf::tools

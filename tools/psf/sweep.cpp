@@ -49,10 +49,10 @@ std::vector<std::string> varied(const study::Json& rows) {
 }
 
 // The best rows by a metric, and what the picture was before.
-void print_best(const study::Json& json, study::Metric metric) {
+void print_best(const study::Json& json, metrics::Metric metric) {
   const study::Json& rows = json["rows"];
   if (rows.empty()) return;
-  const char* name = study::name(metric);
+  const char* name = metrics::name(metric);
   const auto value_of = [&](const study::Json& row) {
     return row["metrics"][name].is_null() ? std::numeric_limits<double>::quiet_NaN()
                                           : row["metrics"][name].get<double>();
@@ -62,7 +62,7 @@ void print_best(const study::Json& json, study::Metric metric) {
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     const double x = value_of(rows[a]), y = value_of(rows[b]);
     if (std::isnan(x) || std::isnan(y)) return std::isnan(y) && !std::isnan(x);
-    return study::lower_is_better(metric) ? x < y : x > y;
+    return metrics::lower_is_better(metric) ? x < y : x > y;
   });
   const std::vector<std::string> names = varied(rows);
   fmt::print("{:>4}  {:>10}  {:>10}  ", "row", name, "neighbours");
@@ -86,7 +86,7 @@ void run(const SweepOptions& options, filter::TermSet terms) {
   keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
   std::vector<filter::Parameters> asked = all_sets(options.lists);
-  const study::Dump dump(options.input);
+  const run::Dump dump(options.input);
   std::vector<std::string> notes;
   fit_terms(dump, asked, terms, notes);
   const StudyFolder folder(options.study, dump, notes);
@@ -94,7 +94,7 @@ void run(const SweepOptions& options, filter::TermSet terms) {
       folder.path(),
       {kVersion, study::describe_input(dump, folder.passes(), folder.camera()),
        study::describe_reference(options.study.reference, folder.reference_picture()),
-       study::describe_metrics(study::kAllMetrics, folder.metric_options())},
+       study::describe_metrics(metrics::kAllMetrics, folder.metric_options())},
       options.resume);
   std::vector<filter::Parameters> missing;
   for (const filter::Parameters& set : asked) {
@@ -109,15 +109,15 @@ void run(const SweepOptions& options, filter::TermSet terms) {
   if (options.study.pictures && !file.has_unfiltered()) names.emplace_back("unfiltered.exr");
   folder.make({options.input}, names, options.common.json);
   print_notes(notes, options.common.quiet);
-  const study::Reference reference(folder.reference_picture(), folder.width(),
-                                   folder.metric_options());
+  const metrics::Reference reference(folder.reference_picture(), folder.width(),
+                                     folder.metric_options());
   if (options.study.pictures) {
     folder.write_reference();
     file.set_reference_picture("reference.exr");
   }
 
   core::Progress progress("sweep", options.common.quiet);
-  study::Sweep sweep;
+  study::SweepRequest sweep;
   sweep.rows = missing;
   sweep.passes = folder.passes();
   sweep.camera = folder.camera();
@@ -125,16 +125,16 @@ void run(const SweepOptions& options, filter::TermSet terms) {
   sweep.on_progress = [&](std::uint64_t done, std::uint64_t total) {
     progress.advance(done, total, fmt::format("{} rows", file.json()["rows"].size()));
   };
-  sweep.on_unfiltered = [&](const study::Metrics& metrics, const std::vector<Rgb>& picture) {
+  sweep.on_unfiltered = [&](const metrics::Metrics& metrics, const std::vector<Rgb>& picture) {
     if (file.has_unfiltered()) return;
     const std::string name = options.study.pictures ? "unfiltered.exr" : "";
     if (!name.empty()) folder.write(name, picture, {});
-    file.set_unfiltered(metrics, study::kAllMetrics, name);
+    file.set_unfiltered(metrics, metrics::kAllMetrics, name);
   };
   sweep.on_row = [&](std::size_t, const study::SweepRow& row, const std::vector<Rgb>& picture) {
     const std::string name = options.study.pictures ? file.next_id() + ".exr" : "";
     if (!name.empty()) folder.write(name, picture, row.parameters);
-    file.add(row, study::kAllMetrics, name);
+    file.add(row, metrics::kAllMetrics, name);
   };
   sweep.on_traversal = [&] { file.write(); };
   if (!missing.empty()) study::run_sweep(dump, reference, sweep);

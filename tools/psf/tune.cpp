@@ -33,7 +33,7 @@ struct TuneOptions {
   CommonOptions common;
   ParameterLists lists;
   std::string input, passes, camera;
-  double epsilon = study::Tune().epsilon;
+  double epsilon = study::TuneRequest().epsilon;
   std::optional<std::uint64_t> max_memory;
 };
 
@@ -43,7 +43,7 @@ constexpr double kCorrelated = 0.05;   // correlation of the parts' noise that i
 
 using Rows = std::vector<const study::TuneRow*>;
 
-Rows by_error(const study::Tuning& tuning) {
+Rows by_error(const study::TuneResult& tuning) {
   Rows rows;
   for (const study::TuneRow& row : tuning.rows) rows.push_back(&row);
   std::stable_sort(rows.begin(), rows.end(), [](const study::TuneRow* a, const study::TuneRow* b) {
@@ -64,13 +64,13 @@ std::string as_options(const filter::Parameters& parameters) {
   return text.substr(1);
 }
 
-std::size_t may_be_better(const study::Tuning& tuning) {
+std::size_t may_be_better(const study::TuneResult& tuning) {
   return static_cast<std::size_t>(
       std::count_if(tuning.rows.begin(), tuning.rows.end(),
                     [](const study::TuneRow& row) { return row.may_be_better; }));
 }
 
-void print(const study::Tuning& tuning, const study::Dump& dump) {
+void print(const study::TuneResult& tuning, const run::Dump& dump) {
   const Rows rows = by_error(tuning);
   fmt::print("{:>10} {:>9} {:>10} {:>10} {:>10} {:>10}  parameters\n", "error", "+-", "bias^2",
              "variance", "neighbours", "sigmas off");
@@ -128,10 +128,10 @@ void run(const TuneOptions& options, filter::TermSet asked) {
   ParameterLists lists = options.lists;
   if (lists.r0.empty()) lists.r0 = kRadii;
   std::vector<filter::Parameters> sets = all_sets(lists);
-  const study::Dump dump(options.input);
+  const run::Dump dump(options.input);
   std::vector<std::string> notes;
   fit_terms(dump, sets, asked, notes);
-  study::Tune tune;
+  study::TuneRequest tune;
   tune.sets = sets;
   tune.passes = parse_passes(options.passes);
   tune.camera = find_camera(dump, options.camera);
@@ -143,7 +143,7 @@ void run(const TuneOptions& options, filter::TermSet asked) {
   tune.on_progress = [&progress](std::uint64_t done, std::uint64_t total) {
     progress.advance(done, total);
   };
-  const study::Tuning tuning = study::tune(dump, tune);
+  const study::TuneResult tuning = study::tune(dump, tune);
   progress.finish();
   print(tuning, dump);
   if (options.common.json.empty()) return;

@@ -13,7 +13,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "fault_json.h"
-#include "formats/check.h"
+#include "formats/check/check.h"
 #include "text.h"
 #include "verbs.h"
 
@@ -25,7 +25,7 @@ struct VerifyOptions {
   std::string input;
 };
 
-nlohmann::ordered_json to_json(const std::string& path, const formats::CheckReport& report) {
+nlohmann::ordered_json to_json(const std::string& path, const formats::CheckResult& report) {
   return {{"file", path},
           {"whole", report.faults.empty()},
           {"closed", report.closed},
@@ -44,7 +44,7 @@ void run(const VerifyOptions& options) {
   const core::ThreadLimit threads(options.common.threads);
   check_files({options.input}, {options.common.json});
   core::Progress progress("verify", options.common.quiet);
-  const formats::CheckReport report =
+  const formats::CheckResult report =
       formats::check(options.input, [&](std::uint64_t done, std::uint64_t total) {
         core::throw_if_interrupted("not all was checked");
         progress.advance(done, total);

@@ -1,8 +1,8 @@
 #include "c_file.h"
 
 #include "core/error.h"
-#include "formats/check.h"
-#include "formats/reader.h"
+#include "formats/check/check.h"
+#include "formats/read/reader.h"
 #include "golden.h"
 
 namespace psf::test {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "file_bytes.h"
-#include "formats/head.h"
+#include "formats/layout/head.h"
 #include "formats/pvb.h"
 
 namespace psf::test {

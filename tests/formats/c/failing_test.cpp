@@ -10,7 +10,7 @@
 
 #include "c_file.h"
 #include "catch.h"
-#include "formats/reader.h"
+#include "formats/read/reader.h"
 #include "golden.h"
 
 namespace {

@@ -3,7 +3,7 @@
 
 #include "c_file.h"
 #include "catch.h"
-#include "formats/head.h"
+#include "formats/layout/head.h"
 #include "golden.h"
 
 using namespace psf;

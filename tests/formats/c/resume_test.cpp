@@ -7,8 +7,8 @@
 
 #include "c_file.h"
 #include "catch.h"
-#include "formats/reader.h"
-#include "formats/writer.h"
+#include "formats/read/reader.h"
+#include "formats/write/writer.h"
 #include "golden.h"
 
 using namespace psf;

@@ -3,8 +3,8 @@
 
 #include "c_file.h"
 #include "catch.h"
-#include "formats/check.h"
-#include "formats/reader.h"
+#include "formats/check/check.h"
+#include "formats/read/reader.h"
 #include "tools/command.h"
 
 using namespace psf;
@@ -35,7 +35,7 @@ TEST_CASE("the sphere's dump is whole, and the same when it was stopped and resu
   run_well("psf_sphere " + twice + " 2 40");
   run_well("psf_sphere " + twice + " 3 40");
   for (const std::string& path : {once, twice}) {
-    const formats::CheckReport report = formats::check(path);
+    const formats::CheckResult report = formats::check(path);
     CHECK(report.faults.empty());
     CHECK(report.closed);
     CHECK(report.passes == 5);

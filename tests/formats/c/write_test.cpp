@@ -12,8 +12,8 @@
 
 #include "c_file.h"
 #include "catch.h"
-#include "formats/check.h"
-#include "formats/reader.h"
+#include "formats/check/check.h"
+#include "formats/read/reader.h"
 #include "golden.h"
 
 namespace fs = std::filesystem;

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "formats/codec.h"
-#include "formats/quantize.h"
+#include "formats/layout/codec.h"
+#include "formats/layout/quantize.h"
 #include "targets.h"
 
 namespace psf::fuzz {

@@ -6,11 +6,11 @@
 #include <string>
 
 #include "file_bytes.h"
-#include "formats/codec.h"
-#include "formats/head_frame.h"
-#include "formats/metadata.h"
-#include "formats/quantize.h"
-#include "formats/writer.h"
+#include "formats/layout/codec.h"
+#include "formats/layout/head_frame.h"
+#include "formats/layout/metadata.h"
+#include "formats/layout/quantize.h"
+#include "formats/write/writer.h"
 #include "golden.h"
 
 namespace psf::fuzz {

@@ -1,16 +1,16 @@
 // Fuzzes metadata and the directories of all frames.
-#include "formats/metadata.h"
+#include "formats/layout/metadata.h"
 
 #include <algorithm>
 #include <string>
 
 #include "core/error.h"
-#include "formats/chunk.h"
-#include "formats/commit.h"
-#include "formats/frame.h"
-#include "formats/head_frame.h"
-#include "formats/layout.h"
-#include "formats/slot.h"
+#include "formats/layout/chunk.h"
+#include "formats/layout/commit.h"
+#include "formats/layout/frame.h"
+#include "formats/layout/head_frame.h"
+#include "formats/layout/layout.h"
+#include "formats/layout/slot.h"
 #include "targets.h"
 
 namespace psf::fuzz {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "formats/crc.h"
-#include "formats/layout.h"
+#include "formats/layout/crc.h"
+#include "formats/layout/layout.h"
 
 namespace psf::fuzz {
 namespace {

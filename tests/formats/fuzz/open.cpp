@@ -2,8 +2,8 @@
 #include <optional>
 
 #include "core/error.h"
-#include "formats/check.h"
-#include "formats/reader.h"
+#include "formats/check/check.h"
+#include "formats/read/reader.h"
 #include "memory_file.h"
 #include "read_everything.h"
 #include "targets.h"
@@ -22,7 +22,7 @@ std::optional<Contents> open_and_read(const std::string& path) {
 
 bool has_no_fault(const std::string& path) {
   try {
-    const formats::CheckReport report = formats::check(path);
+    const formats::CheckResult report = formats::check(path);
     for (const formats::Fault& fault : report.faults) {
       demand(fault.text().find('\n') == std::string::npos, "a fault is one line");
     }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "formats/reader.h"
+#include "formats/read/reader.h"
 
 namespace psf::fuzz {
 

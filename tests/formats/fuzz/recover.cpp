@@ -1,5 +1,5 @@
 // Fuzzes recovery.
-#include "formats/recover.h"
+#include "formats/check/recover.h"
 
 #include <unistd.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "formats/reader.h"
+#include "formats/read/reader.h"
 #include "memory_file.h"
 #include "read_everything.h"
 #include "targets.h"
@@ -41,7 +41,7 @@ class OutputFolder {
   std::filesystem::path folder_;
 };
 
-std::optional<formats::RecoverReport> recover(const std::string& in, const std::string& out,
+std::optional<formats::RecoverResult> recover(const std::string& in, const std::string& out,
                                               bool uncommitted) {
   try {
     return formats::recover(in, out, {uncommitted});
@@ -71,7 +71,7 @@ void compare(const Contents& in, const Contents& out) {
 }
 
 void check_output(const std::string& in, const std::string& out,
-                  const formats::RecoverReport& report) {
+                  const formats::RecoverResult& report) {
   demand(formats::check(out).faults.empty(), "the output has no fault");
   const formats::Reader reader(out);
   demand(reader.closed(), "the output is closed");

@@ -11,9 +11,9 @@
 #include "../file_bytes.h"
 #include "../golden.h"
 #include "catch.h"
-#include "formats/check.h"
-#include "formats/quantize.h"
-#include "formats/reader.h"
+#include "formats/check/check.h"
+#include "formats/layout/quantize.h"
+#include "formats/read/reader.h"
 #include "tool.h"
 
 using namespace psf;

@@ -7,8 +7,8 @@
 #include "../c/c_file.h"
 #include "../golden.h"
 #include "catch.h"
-#include "formats/check.h"
-#include "formats/reader.h"
+#include "formats/check/check.h"
+#include "formats/read/reader.h"
 #include "tool.h"
 
 using namespace psf;

@@ -1,0 +1,286 @@
+#include "explain/attribution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "explain/remedies.h"
+#include "filter/values.h"
+#include "filter/weights.h"
+#include "search/ball.h"
+
+namespace psf::explain {
+namespace {
+
+bool is_counted(const ExplainedPath& path) {
+  return path.fate != PathFate::left_out && path.fate != PathFate::overflowed;
+}
+
+class Tracer {
+ public:
+  explicit Tracer(const ExplainResult& explanation) : e_(explanation), pixel_if_(explanation) {}
+
+  Attribution run() {
+    add_up_pixel();
+    count_refusals();
+    rank_sources();
+    find_leak();
+    group();
+    result_.remedies = find_remedies(e_, pixel_if_, leaking_);
+    return std::move(result_);
+  }
+
+ private:
+  void add_up_pixel() {
+    PixelSums& pixel = result_.pixel;
+    pixel.paths =
+        static_cast<std::uint64_t>(std::count_if(e_.paths.begin(), e_.paths.end(), is_counted));
+    Colour own(0, 0, 0), reflected(0, 0, 0), alpha(0, 0, 0);
+    std::vector<double>
+        averaged;  // the part that is averaged: the rest is the same, filtered or not
+    double brightest = 0;
+    for (std::size_t p = 0; p < e_.paths.size(); ++p) {
+      const ExplainedPath& path = e_.paths[p];
+      const std::uint32_t i = path.vertex;
+      const bool bare = path.fate == PathFate::no_vertex;
+      if (!is_counted(path)) continue;
+      Colour radiance = pixel_if_.unfiltered(i), part(0, 0, 0);
+      pixel.filtered += radiance;
+      if (!bare) pixel.filtered += wide(e_.vertices.throughput[i]) * wide(path.c_bar);
+      if (!path.is_input) continue;
+      if (!bare) {
+        const Colour alpha_i = wide(e_.vertices.throughput[i]);
+        part = alpha_i * wide(e_.vertices.contribution[i]);
+        averaged.push_back(luminance(part));
+        radiance += part;
+        reflected += part;
+        alpha += alpha_i;
+      }
+      own += radiance;
+      ++pixel.own_paths;
+      if (luminance(radiance) <= brightest) continue;
+      brightest = luminance(radiance);
+      pixel.brightest = p;
+    }
+    if (pixel.paths > 0) pixel.filtered /= static_cast<double>(pixel.paths);
+    if (pixel.own_paths == 0) return;
+    const auto n = static_cast<double>(pixel.own_paths);
+    pixel.own = own / n;
+    if (luminance(own) > 0) pixel.brightest_share = brightest / luminance(own);
+    pixel.own_error =
+        standard_error(averaged, luminance(reflected)) * static_cast<double>(averaged.size()) / n;
+    for (int c = 0; c < 3; ++c) {
+      if (alpha[c] != 0) pixel.baseline[c] = reflected[c] / alpha[c];
+    }
+  }
+
+  static double standard_error(const std::vector<double>& values, double sum) {
+    if (values.size() < 2) return 0;
+    const auto n = static_cast<double>(values.size());
+    double squares = 0;
+    for (const double value : values) squares += (value - sum / n) * (value - sum / n);
+    return std::sqrt(squares / (n - 1) / n);
+  }
+
+  void count_refusals() {
+    const auto on = terms_on(e_.request.parameters.weights);
+    for (std::size_t k = 0; k < filter::kTermCount; ++k) {
+      if (!on[k]) continue;
+      const std::uint32_t bit = 1u << k;
+      TermRefusals of;
+      of.term = k;
+      for (const ExplainedPair& pair : e_.pairs) {
+        if (!pair.in_ball) continue;
+        of.refused += (pair.refusers & bit) != 0 ? 1u : 0u;
+        of.alone += pair.refusers == bit ? 1u : 0u;
+      }
+      of.without =
+          pixel_if_([bit](const ExplainedPair& pair) { return (pair.refusers & ~bit) == 0; });
+      result_.refusals.push_back(of);
+    }
+    result_.candidates = static_cast<std::uint64_t>(std::count_if(
+        e_.pairs.begin(), e_.pairs.end(), [](const auto& pair) { return pair.in_ball; }));
+  }
+
+  // The excess of one averaged pair. The excesses of all pairs sum to the difference.
+  [[nodiscard]] Colour excess_of(const ExplainedPair& pair) const {
+    const ExplainedPath& path = e_.paths[pair.path];
+    const auto n = static_cast<double>(result_.pixel.paths);
+    const Colour alpha = wide(e_.vertices.throughput[path.vertex]);
+    return share_of(e_, pair, result_.pixel.paths) -
+           alpha * result_.pixel.baseline / (n * averaged_[pair.path]);
+  }
+
+  void rank_sources() {
+    averaged_.assign(e_.paths.size(), 0);
+    for (const ExplainedPair& pair : e_.pairs) averaged_[pair.path] += pair.averaged ? 1 : 0;
+    std::vector<SourceShare> of_vertex(e_.record.size());
+    std::vector<double> most(e_.record.size(), 0);
+    for (std::size_t p = 0; p < e_.pairs.size(); ++p) {
+      const ExplainedPair& pair = e_.pairs[p];
+      if (!pair.averaged || !is_counted(e_.paths[pair.path])) continue;
+      SourceShare& source = of_vertex[pair.vertex];
+      const Colour excess = excess_of(pair);
+      const double weight = std::abs(luminance(excess));
+      if (source.paths == 0 || weight > most[pair.vertex]) {
+        most[pair.vertex] = weight;
+        source.pair = p;
+      }
+      source.vertex = pair.vertex;
+      ++source.paths;
+      source.share += share_of(e_, pair, result_.pixel.paths);
+      source.excess += excess;
+      result_.pixel.difference += excess;
+    }
+    for (const SourceShare& source : of_vertex) {
+      if (source.paths > 0) result_.sources.push_back(source);
+    }
+    sign_ = luminance(result_.pixel.difference) < 0 ? -1 : 1;
+    sort_by_excess(result_.sources);
+  }
+
+  void sort_by_excess(auto& list) const {
+    std::stable_sort(list.begin(), list.end(), [this](const auto& a, const auto& b) {
+      return sign_ * luminance(a.excess) > sign_ * luminance(b.excess);
+    });
+  }
+
+  void find_leak() {
+    const double all = sign_ * luminance(result_.pixel.difference);
+    double sum = 0;
+    while (result_.leak < result_.sources.size() && sum < all) {
+      const double excess = sign_ * luminance(result_.sources[result_.leak].excess);
+      if (!(excess > 0)) break;
+      sum += excess;
+      ++result_.leak;
+    }
+    leaking_.assign(e_.record.size(), false);
+    for (std::size_t k = 0; k < result_.leak; ++k) leaking_[result_.sources[k].vertex] = true;
+  }
+
+  void group() {
+    filter::WeightTerms apart = e_.request.parameters.weights;
+    const filter::WeightTerms defaults;
+    const auto has = [](const auto& column) { return !column.empty(); };
+    if (!apart.normal && has(e_.vertices.normal)) apart.normal = defaults.normal;
+    if (!apart.reflectance && has(e_.vertices.reflectance))
+      apart.reflectance = defaults.reflectance;
+    if (!apart.plane && has(e_.vertices.normal)) apart.plane = kPlaneApart;
+    apart.visibility = has(e_.vertices.visibility);
+    apart.material = has(e_.vertices.material);
+    apart.hit_distance.reset();
+    apart.direction.reset();
+    apart.gloss.reset();
+    const filter::Weights weights(e_.vertices.view(), apart);
+    std::map<std::uint32_t, KindShare> kinds;
+    std::map<std::pair<std::uint16_t, std::uint32_t>, PixelShare> pixels;
+    std::vector<bool> met(e_.record.size(), false);
+    for (const ExplainedPair& pair : e_.pairs) {
+      const ExplainedPath& path = e_.paths[pair.path];
+      if (!pair.averaged || !is_counted(path)) continue;
+      const std::uint32_t j = pair.vertex;
+      const Colour excess = excess_of(pair);
+      const std::uint16_t camera = e_.vertices.camera.empty() ? 0 : e_.vertices.camera[j];
+      PixelShare& pixel = pixels[{camera, e_.vertices.pixel[j]}];
+      pixel.camera = camera;
+      pixel.pixel = e_.vertices.pixel[j];
+      if (!met[j]) ++pixel.sources;
+      met[j] = true;
+      pixel.share += share_of(e_, pair, result_.pixel.paths);
+      add(pixel, pair, excess);
+      if (pair.self) continue;
+      KindShare& kind = kinds[weights.refusers(path.vertex, j, path.radius)];
+      ++kind.pairs;
+      kind.leaking += leaking_[j] ? 1u : 0u;
+      kind.excess += excess;
+      ++(leaking_[j] ? result_.leak_pairs : result_.other_pairs);
+    }
+    for (auto& [terms, kind] : kinds) {
+      kind.terms = terms;
+      result_.kinds.push_back(kind);
+    }
+    for (auto& [key, pixel] : pixels) {
+      const auto n = static_cast<double>(pixel.pairs);
+      for (double* mean :
+           {&pixel.angle, &pixel.reflectance, &pixel.lights, &pixel.material, &pixel.plane}) {
+        *mean /= n;
+      }
+      result_.pixels.push_back(pixel);
+    }
+    sort_by_excess(result_.kinds);
+    sort_by_excess(result_.pixels);
+  }
+
+  void add(PixelShare& pixel, const ExplainedPair& pair, const Colour& excess) const {
+    const PairFeatures features = features_of(e_, pair);
+    ++pixel.pairs;
+    pixel.leaking += leaking_[pair.vertex] ? 1u : 0u;
+    pixel.excess += excess;
+    pixel.angle += features.angle.value_or(0);
+    pixel.reflectance += features.reflectance.value_or(0);
+    pixel.lights += features.lights.value_or(0) != 0 ? 1 : 0;
+    pixel.material += features.material.value_or(false) ? 1 : 0;
+    pixel.plane += features.plane.value_or(0);
+  }
+
+  const ExplainResult& e_;
+  PixelIf pixel_if_;
+  Attribution result_;
+  double sign_ = 1;
+  std::vector<double> averaged_;  // sources, by path
+  std::vector<bool> leaking_;     // by vertex
+};
+
+}  // namespace
+
+double luminance(const Colour& colour) {
+  return 0.2126 * colour.x + 0.7152 * colour.y + 0.0722 * colour.z;
+}
+
+Attribution attribute(const ExplainResult& explanation) {
+  return Tracer(explanation).run();
+}
+
+Colour share_of(const ExplainResult& explanation, const ExplainedPair& pair, std::uint64_t paths) {
+  const ExplainedPath& path = explanation.paths[pair.path];
+  Rgb value = explanation.value[pair.vertex];
+  if (explanation.request.parameters.demodulate) {
+    value = filter::remodulate(value, explanation.vertices.reflectance[path.vertex]);
+  }
+  return wide(explanation.vertices.throughput[path.vertex]) * wide(value) * double{pair.area} *
+         path.scale / static_cast<double>(paths);
+}
+
+PairFeatures features_of(const ExplainResult& explanation, const ExplainedPair& pair) {
+  const run::BlockRecords& v = explanation.vertices;
+  const ExplainedPath& path = explanation.paths[pair.path];
+  const std::uint32_t i = path.vertex, j = pair.vertex;
+  const auto degrees = [](const Vec3& a, const Vec3& b) {
+    return std::acos(std::clamp(double{dot(a, b)}, -1.0, 1.0)) * 180 / std::numbers::pi;
+  };
+  PairFeatures features;
+  if (!v.normal.empty()) {
+    features.angle = degrees(v.normal[i], v.normal[j]);
+    const Vec3 to_j(v.position[j].x - v.position[i].x, v.position[j].y - v.position[i].y,
+                    v.position[j].z - v.position[i].z);
+    features.plane = path.radius > 0 ? double{dot(to_j, v.normal[i])} / double{path.radius} : 0;
+  }
+  if (!v.reflectance.empty()) {
+    features.reflectance =
+        std::sqrt(double{search::distance_sq(v.reflectance[i], v.reflectance[j])});
+  }
+  if (!v.visibility.empty()) features.lights = v.visibility[i] ^ v.visibility[j];
+  if (!v.hit_distance.empty()) {
+    const auto h_i = double{v.hit_distance[i]}, h_j = double{v.hit_distance[j]};
+    const double longer = std::max(h_i, h_j);
+    features.hit_distance = h_i == h_j           ? 0
+                            : std::isinf(longer) ? longer
+                                                 : std::abs(h_i - h_j) / longer;
+  }
+  if (!v.direction.empty()) features.direction = degrees(v.direction[i], v.direction[j]);
+  if (!v.material.empty()) features.material = v.material[i] != v.material[j];
+  return features;
+}
+
+}  // namespace psf::explain

@@ -1,0 +1,121 @@
+// Where a pixel's light came from: the sources that raised or lowered it against its own paths, the
+// features in which these sources differ, and the terms that would have refused them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/vec.h"
+#include "explain/explain.h"
+
+namespace psf::explain {
+
+using Colour = Imath::V3d;  // linear, Rec. 709 primaries
+
+[[nodiscard]] inline Colour wide(const Vec3& v) {
+  return {double{v.x}, double{v.y}, double{v.z}};
+}
+[[nodiscard]] double luminance(const Colour& colour);
+
+// Sums over the N paths that are part of the pixel.
+struct PixelSums {
+  std::uint64_t paths = 0;      // N
+  Colour filtered{0, 0, 0};     // [pixel]
+  std::uint64_t own_paths = 0;  // number of paths that have an unfiltered radiance
+  std::optional<Colour> own;    // mean of these paths' unfiltered radiance
+  double own_error = 0;         // standard error of the mean luminance of alpha_i c_i; 0 for a
+                                // single path
+  std::size_t brightest = 0;    // place in ::paths of the path with most unfiltered luminance
+  double brightest_share = 0;   // share of that path in `own`
+  Colour baseline{0, 0, 0};     // o = sum alpha_i c_i / sum alpha_i over its own sources
+  Colour difference{0, 0, 0};   // sum alpha_i (c_bar_i - o) / N; it is filtered - own where every
+                                // path has a contribution
+};
+
+// A source j, summed over all paths that average it.
+struct SourceShare {
+  std::uint32_t vertex = 0, paths = 0;
+  std::size_t pair = 0;    // the pair with most excess
+  Colour share{0, 0, 0};   // what it adds to the pixel: sum alpha_i c_j / (count_i N)
+  Colour excess{0, 0, 0};  // what it adds beyond o in its place; the excesses sum to the difference
+};
+
+// The sources that lie in one pixel; angle to plane are means over pairs.
+struct PixelShare {
+  std::uint16_t camera = 0;
+  std::uint32_t pixel = 0;  // y * width + x
+  std::uint64_t sources = 0, pairs = 0, leaking = 0;
+  Colour share{0, 0, 0}, excess{0, 0, 0};
+  double angle = 0;                 // between the normals, degrees
+  double reflectance = 0;           // norm of the difference
+  double lights = 0, material = 0;  // share of pairs that differ
+  double plane = 0;                 // signed distance off the tangent plane of x_i, in radii
+};
+
+// The averaged pairs, without those of a path with itself, by the set of terms that would tell the
+// two records apart. The thresholds are those of the run, or the filter's defaults, and kPlaneApart
+// for `plane`.
+inline constexpr float kPlaneApart = 0.25f;
+struct KindShare {
+  std::uint32_t terms = 0;  // bit k: term k of kTermNames; never hit-distance, direction, gloss
+  std::uint64_t pairs = 0, leaking = 0;
+  Colour excess{0, 0, 0};
+};
+
+// TermRefusals and Remedy leave the radii as they are, also where `adaptive` would choose others.
+
+// For a term that is on: the number of pairs in the balls that it refuses, the number that it alone
+// refuses, and the pixel without the term.
+struct TermRefusals {
+  std::size_t term = 0;
+  std::uint64_t refused = 0, alone = 0;
+  Colour without{0, 0, 0};
+};
+
+// A term with another threshold than in the run: of a list of thresholds, the one that best tells
+// the sources that leak from the others. `visibility` and `material` have no threshold.
+struct Remedy {
+  std::size_t term = 0;
+  std::optional<float> threshold;
+  std::uint64_t leaking = 0, others = 0;  // averaged pairs that it would also refuse
+  Colour pixel{0, 0, 0};                  // value of the pixel with this term
+  [[nodiscard]] double gain(std::uint64_t all_leaking, std::uint64_t all_others) const;
+};
+
+struct Attribution {
+  PixelSums pixel;
+  std::uint64_t candidates = 0;  // pairs in the balls
+  std::vector<TermRefusals> refusals;
+  // The averaged sources. Those that push the pixel in the direction of the difference come first.
+  std::vector<SourceShare> sources;
+  // `leak` is the least number of sources, from the first on, whose excesses make up the
+  // difference. The others are the numbers of averaged pairs with these sources and with all
+  // others, without the pairs of paths with themselves.
+  std::size_t leak = 0;
+  std::uint64_t leak_pairs = 0, other_pairs = 0;
+  std::vector<PixelShare> pixels;  // in the same order as `sources`
+  std::vector<KindShare> kinds;    // in the same order as `sources`
+  std::vector<Remedy> remedies;    // best first; without those that refuse nothing
+};
+
+[[nodiscard]] Attribution attribute(const ExplainResult& explanation);
+
+// What a pair adds to a pixel of `paths` paths.
+[[nodiscard]] Colour share_of(const ExplainResult& explanation, const ExplainedPair& pair,
+                              std::uint64_t paths);
+
+// The differences between a source and the vertex that averages it; not set where the file lacks
+// the channel.
+struct PairFeatures {
+  std::optional<double> angle;          // between the normals, degrees
+  std::optional<double> reflectance;    // norm of the difference
+  std::optional<std::uint32_t> lights;  // visibility bits that differ
+  std::optional<double> hit_distance;   // relative difference; infinity: one is a miss
+  std::optional<double> plane;          // distance off the plane in radii; > 0 on the normal's side
+  std::optional<double> direction;      // angle between the directions, degrees
+  std::optional<bool> material;         // whether the materials differ
+};
+[[nodiscard]] PairFeatures features_of(const ExplainResult& explanation, const ExplainedPair& pair);
+
+}  // namespace psf::explain

@@ -1,0 +1,140 @@
+#include "explain/block.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "filter/inputs.h"
+#include "filter/radius.h"
+#include "search/ball.h"
+
+namespace psf::explain {
+
+BlockExplainer::BlockExplainer(const filter::Records& records, const filter::Block& block,
+                               const filter::Parameters& parameters)
+    : parameters_(parameters) {
+  std::vector<float> given;
+  filter::radii(parameters.radius, records, block, given);
+  average_ = filter::average(records, given, block, parameters);
+  if (parameters.iterations > 1) {
+    filter::Parameters fewer = parameters;
+    --fewer.iterations;
+    before_ = filter::average(records, given, block, fewer).c_bar;
+  }
+  radius_in_world_ = average_.radius.empty() ? given : average_.radius;
+  scaled_.emplace(records, radius_in_world_);
+  records_ = scaled_->records();
+  radius_ = scaled_->radius();
+  weights_.emplace(records_, parameters.weights);
+  roles_.of = average_.roles;
+  std::vector<Vec3> positions;
+  for (std::uint32_t j = 0; j < records.size(); ++j) {
+    if (roles_.of[j] != filter::Role::source) continue;
+    roles_.sources.push_back(j);
+    positions.push_back(records_.position[j]);
+  }
+  search_ = search::make_search(search::Kind::brute, positions);
+  if (parameters.estimator == filter::Estimator::disk) {
+    area_ = filter::areas(records_, roles_, block);
+  }
+}
+
+ExplainedPath BlockExplainer::explain(std::uint32_t i, std::vector<ExplainedPair>& pairs,
+                                      std::atomic<std::int64_t>& room) const {
+  ExplainedPath path;
+  path.vertex = i;
+  path.fate = fate_of(i);
+  path.is_input = filter::is_input(roles_.of[i]);
+  if (path.fate == PathFate::no_vertex || path.fate == PathFate::left_out) return path;
+  path.radius = radius_in_world_[i];
+  path.c_bar = average_.c_bar[i];
+  path.neighbors = average_.neighbors[i];
+  find_pairs(i, pairs, room);
+  path.in_ball = static_cast<std::uint32_t>(pairs.size());
+  if (path.neighbors == 0) adopt(i, pairs);
+  std::sort(pairs.begin(), pairs.end(),
+            [](const auto& a, const auto& b) { return a.vertex < b.vertex; });
+  path.scale = scale_of(i, pairs);
+  return path;
+}
+
+Rgb BlockExplainer::value(std::uint32_t j) const {
+  const Rgb& c = parameters_.iterations > 1 ? before_[j] : records_.contribution[j];
+  const bool demodulated = parameters_.demodulate && is_source(j);
+  return demodulated ? filter::demodulate(c, records_.reflectance[j]) : c;
+}
+
+// Without area a ball holds its own value.
+bool BlockExplainer::is_disk(std::uint32_t i) const {
+  return parameters_.estimator == filter::Estimator::disk && radius_[i] * radius_[i] > 0;
+}
+
+PathFate BlockExplainer::fate_of(std::uint32_t i) const {
+  const filter::Role role = roles_.of[i];
+  if (role == filter::Role::left_out) return PathFate::left_out;
+  if (!filter::is_query(role)) return PathFate::no_vertex;
+  const Rgb u = records_.unfiltered.empty() ? Rgb(0, 0, 0) : records_.unfiltered[i];
+  const Vec3 filtered = u + records_.throughput[i] * average_.c_bar[i];
+  const Vec3 input = u + records_.throughput[i] * records_.contribution[i];
+  const bool finite = is_finite(filtered) && (role == filter::Role::query || is_finite(input));
+  if (!finite) return PathFate::overflowed;
+  return average_.neighbors[i] == 0 ? PathFate::orphan : PathFate::averaged;
+}
+
+void BlockExplainer::find_pairs(std::uint32_t i, std::vector<ExplainedPair>& pairs,
+                                std::atomic<std::int64_t>& room) const {
+  std::vector<search::Neighbor> found;
+  search_->within(records_.position[i], radius_[i] * radius_[i], found);
+  if ((room -= static_cast<std::int64_t>(found.size()) + 1) < 0) {
+    throw Error(ErrorCode::limit,
+                "the balls around this pixel's vertices hold too many sources to list; choose a "
+                "smaller --r0 or --block, fewer --passes, or one --path");
+  }
+  const auto add = [&](std::uint32_t j, float d_sq) {
+    ExplainedPair pair;
+    pair.vertex = j;
+    pair.distance = scaled_->to_world(std::sqrt(d_sq));
+    pair.self = j == i;
+    pair.refusers = pair.self ? 0 : weights_->refusers(i, j, radius_[i]);
+    pair.in_ball = true;
+    pair.averaged = pair.refusers == 0;
+    if (is_disk(i)) pair.area = area_[j];
+    pairs.push_back(pair);
+  };
+  if (is_source(i)) add(i, 0);
+  for (const search::Neighbor& neighbor : found) {
+    const std::uint32_t j = roles_.sources[neighbor.index];
+    if (j != i) add(j, neighbor.d_sq);
+  }
+}
+
+// Marks or adds the sources that an orphan averages; they have no areas.
+void BlockExplainer::adopt(std::uint32_t i, std::vector<ExplainedPair>& pairs) const {
+  const filter::Problem problem{records_, roles_, radius_, *weights_, {}};
+  for (const std::uint32_t j : filter::adopt(*search_, problem, i).sources) {
+    auto pair = std::find_if(pairs.begin(), pairs.end(),
+                             [j](const ExplainedPair& of) { return of.vertex == j; });
+    if (pair == pairs.end()) {
+      pairs.emplace_back();
+      pair = pairs.end() - 1;
+      pair->vertex = j;
+      pair->distance = scaled_->to_world(
+          std::sqrt(search::distance_sq(records_.position[i], records_.position[j])));
+      pair->refusers = weights_->refusers(i, j, radius_[i]);
+    }
+    pair->averaged = true;
+    pair->area = 1;
+  }
+}
+
+double BlockExplainer::scale_of(std::uint32_t i, std::span<const ExplainedPair> pairs) const {
+  if (is_disk(i) && average_.neighbors[i] > 0) {
+    return 1 / (std::numbers::pi * double{radius_[i]} * double{radius_[i]});
+  }
+  const auto count = std::count_if(pairs.begin(), pairs.end(),
+                                   [](const ExplainedPair& pair) { return pair.averaged; });
+  return 1 / static_cast<double>(count);
+}
+
+}  // namespace psf::explain

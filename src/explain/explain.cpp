@@ -1,0 +1,214 @@
+#include "explain/explain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/interrupt.h"
+#include "core/parallel.h"
+#include "explain/block.h"
+#include "filter/blocks.h"
+
+namespace psf::explain {
+namespace {
+
+constexpr std::uint64_t kScan = std::uint64_t{1} << 20;  // records whose pixels are read at a time
+
+[[noreturn]] void refuse(const std::string& why) {
+  throw Error(ErrorCode::usage, why);
+}
+
+std::string name_of(const run::Dump& dump, std::size_t camera) {
+  return fmt::format("camera \"{}\"", dump.metadata().cameras[camera].name);
+}
+
+// All that a term can look at, where the file has it, beside what the parameters need.
+run::ChannelSet select_all(const run::Dump& dump, const filter::Parameters& parameters) {
+  static_cast<void>(dump.select(parameters, true));  // names what this run misses
+  const auto has = [&dump](const char* channel) {
+    return dump.reader().head().find(channel).has_value();
+  };
+  filter::Parameters all = parameters;
+  if (has("visibility")) all.weights.visibility = true;
+  if (has("material")) all.weights.material = true;
+  if (has("hit_distance")) all.weights.hit_distance = 0.0f;
+  if (has("direction")) all.weights.direction = 0.0f;
+  if (has("roughness") && has("normal") && has("direction")) all.weights.gloss = 1.0f;
+  if (has("distance") && all.radius.basis == filter::RadiusBasis::world) {
+    all.radius.basis = filter::RadiusBasis::distance;
+  }
+  return dump.select(all, true);
+}
+
+void append(const filter::Records& from, std::size_t i, run::BlockRecords& to) {
+  const auto copy = [i](const auto& column, auto& out) {
+    if (!column.empty()) out.push_back(column[i]);
+  };
+  copy(from.flags, to.flags);
+  copy(from.position, to.position);
+  copy(from.distance, to.distance);
+  copy(from.throughput, to.throughput);
+  copy(from.contribution, to.contribution);
+  copy(from.unfiltered, to.unfiltered);
+  copy(from.pixel, to.pixel);
+  copy(from.camera, to.camera);
+  copy(from.normal, to.normal);
+  copy(from.reflectance, to.reflectance);
+  copy(from.visibility, to.visibility);
+  copy(from.hit_distance, to.hit_distance);
+  copy(from.direction, to.direction);
+  copy(from.material, to.material);
+  copy(from.roughness, to.roughness);
+}
+
+class Explainer {
+ public:
+  Explainer(const run::Dump& dump, const ExplainRequest& request)
+      : dump_(dump), channels_(select_all(dump, request.parameters)), room_(request.most_pairs) {
+    result_.request = request;
+    for (const filter::CameraView& camera : dump.cameras()) result_.widths.push_back(camera.width);
+    const std::size_t last = run::last_pass(dump, request.passes);
+    result_.passes = last - request.passes.first;
+    blocks_.emplace(request.parameters.block, dump.pass_bounds(), request.passes.first, last);
+  }
+
+  ExplainResult run() {
+    find_paths();
+    std::size_t next = 0;
+    for (std::uint64_t k = 0; k < blocks_->count() && next < records_of_paths_.size(); ++k) {
+      const filter::PathRange range = (*blocks_)[k];
+      std::vector<std::uint32_t> members;
+      for (; next < records_of_paths_.size() && records_of_paths_[next] < range.last; ++next) {
+        members.push_back(static_cast<std::uint32_t>(records_of_paths_[next] - range.first));
+      }
+      if (!members.empty()) add_block(k, range, members);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  void find_paths() {
+    const ExplainRequest& request = result_.request;
+    const filter::PathRange all = blocks_->all();
+    if (request.path) {
+      if (*request.path < all.first || *request.path >= all.last) {
+        refuse(fmt::format("--path: {} is not among the paths {} to {} of the passes chosen",
+                           *request.path, all.first, all.last - 1));
+      }
+      records_of_paths_ = {*request.path};
+      return;
+    }
+    if (request.camera >= dump_.cameras().size()) refuse("--camera: there is no such camera");
+    const filter::CameraView& camera = dump_.cameras()[request.camera];
+    if (request.x >= camera.width || request.y >= camera.height) {
+      refuse(fmt::format("--pixel: {},{} is outside the picture of {}, 0,0 to {},{}", request.x,
+                         request.y, name_of(dump_, request.camera), camera.width - 1,
+                         camera.height - 1));
+    }
+    run::ChannelSet pixels;
+    pixels.pixel = channels_.pixel;
+    pixels.camera = channels_.camera;
+    const std::uint32_t wanted = request.y * camera.width + request.x;
+    run::BlockRecords records;
+    for (std::uint64_t first = all.first; first < all.last; first += kScan) {
+      core::throw_if_interrupted("nothing was explained");
+      dump_.read({first, std::min(first + kScan, all.last)}, pixels, records);
+      for (std::size_t i = 0; i < records.pixel.size(); ++i) {
+        if (records.pixel[i] != wanted) continue;
+        if (!records.camera.empty() && records.camera[i] != request.camera) continue;
+        records_of_paths_.push_back(first + i);
+      }
+    }
+    if (records_of_paths_.empty()) {
+      throw Error(
+          ErrorCode::bad_input,
+          fmt::format("{}: none of the paths chosen falls into pixel {},{} of {}; choose "
+                      "another pixel or more --passes",
+                      dump_.reader().path(), request.x, request.y, name_of(dump_, request.camera)));
+    }
+  }
+
+  void add_block(std::uint64_t k, const filter::PathRange& range,
+                 const std::vector<std::uint32_t>& members) {
+    core::throw_if_interrupted("nothing was explained");
+    dump_.read(range, channels_, block_records_);
+    const filter::Block block =
+        describe_block(dump_, *blocks_, k, result_.request.parameters.radius.count);
+    const BlockExplainer explainer(block_records_.view(), block, result_.request.parameters);
+    std::vector<ExplainedPath> paths(members.size());
+    std::vector<std::vector<ExplainedPair>> pairs(members.size());
+    core::parallel_for(members.size(), 1, [&](std::size_t m, std::size_t) {
+      paths[m] = explainer.explain(members[m], pairs[m], room_);
+    });
+    ++result_.blocks;
+    add(explainer, range.first, paths, pairs);
+    if (result_.request.on_progress) {
+      result_.request.on_progress(range.last - blocks_->all().first, blocks_->all().size());
+    }
+  }
+
+  // Turns record numbers of the block into vertices of the explanation.
+  void add(const BlockExplainer& explainer, std::uint64_t first,
+           std::span<const ExplainedPath> paths, std::span<std::vector<ExplainedPair>> pairs) {
+    std::vector<std::uint32_t> used;
+    for (const ExplainedPath& path : paths) used.push_back(path.vertex);
+    for (const auto& of_path : pairs) {
+      for (const ExplainedPair& pair : of_path) used.push_back(pair.vertex);
+    }
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    const std::size_t base = result_.record.size();
+    const auto vertex_of = [&](std::uint32_t i) {
+      return static_cast<std::uint32_t>(
+          base +
+          static_cast<std::size_t>(std::lower_bound(used.begin(), used.end(), i) - used.begin()));
+    };
+    for (std::size_t m = 0; m < paths.size(); ++m) {
+      ExplainedPath path = paths[m];
+      path.vertex = vertex_of(path.vertex);
+      path.begin = result_.pairs.size();
+      for (ExplainedPair pair : pairs[m]) {
+        pair.vertex = vertex_of(pair.vertex);
+        pair.path = static_cast<std::uint32_t>(result_.paths.size());
+        result_.pairs.push_back(pair);
+      }
+      path.end = result_.pairs.size();
+      result_.paths.push_back(path);
+    }
+    const auto& bounds = dump_.pass_bounds();
+    for (const std::uint32_t i : used) {
+      append(block_records_.view(), i, result_.vertices);
+      result_.record.push_back(first + i);
+      const auto next = std::upper_bound(bounds.begin(), bounds.end(), first + i);
+      result_.pass.push_back(static_cast<std::uint32_t>(next - bounds.begin() - 1));
+      result_.is_source.push_back(explainer.is_source(i));
+      result_.value.push_back(explainer.value(i));
+    }
+  }
+
+  const run::Dump& dump_;
+  run::ChannelSet channels_;
+  std::optional<filter::Blocks> blocks_;
+  std::vector<std::uint64_t> records_of_paths_;
+  run::BlockRecords block_records_;
+  std::atomic<std::int64_t> room_;
+  ExplainResult result_;
+};
+
+}  // namespace
+
+ExplainResult explain(const run::Dump& dump, const ExplainRequest& request) {
+  request.parameters.validate();
+  using filter::Estimator;
+  const Estimator estimator = request.parameters.estimator;
+  if (estimator != Estimator::average && estimator != Estimator::disk &&
+      estimator != Estimator::adaptive) {
+    refuse(
+        "--estimator: only those that average over a ball can be explained: average, adaptive, "
+        "disk");
+  }
+  return Explainer(dump, request).run();
+}
+
+}  // namespace psf::explain

@@ -1,0 +1,86 @@
+// Explains a pixel of a filtered picture: its paths, the sources that each averaged, and the
+// sources that the weights refused.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "filter/parameters.h"
+#include "filter/records.h"
+#include "run/block_records.h"
+#include "run/dump.h"
+#include "run/passes.h"
+
+namespace psf::explain {
+
+struct ExplainRequest {
+  filter::Parameters parameters;  // estimator `average`, `adaptive` or `disk`
+  run::PassSelection passes;
+  std::size_t camera = 0;             // index
+  std::uint32_t x = 0, y = 0;         // pixel, row 0 at the top
+  std::optional<std::uint64_t> path;  // explain this record alone, whatever its pixel
+  // The most pairs of a path of the pixel and a source in its ball. A pair takes 24 bytes of
+  // memory, and a few times that as JSON.
+  std::int64_t most_pairs = std::int64_t{1} << 25;
+  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress;  // paths
+};
+
+enum class PathFate : std::uint8_t {
+  averaged,    // averaged over the sources in its ball that pass the weights
+  orphan,      // no source in its ball passed: averaged over the nearest instead
+  no_vertex,   // contributes u_i alone
+  left_out,    // a value in use is not finite, or its block has no source: not in the pixel
+  overflowed,  // its radiance, filtered or not, is not finite: not in the pixel
+};
+
+// One of the pixel's paths.
+struct ExplainedPath {
+  std::uint32_t vertex = 0;  // place of x_i in ExplainResult::vertices
+  PathFate fate = PathFate::averaged;
+  bool is_input = false;  // the path is in the picture without filter
+  float radius = 0;       // r_i, world units; for `adaptive` the radius that it chose
+  Rgb c_bar{0, 0, 0};
+  std::uint32_t neighbors = 0;     // number of sources averaged; 0 for an orphan
+  double scale = 1;                // factor of the sum over sources: 1 / number or 1 / (pi r_i^2)
+  std::size_t begin = 0, end = 0;  // its pairs are [begin, end) of ExplainResult::pairs
+  std::uint32_t in_ball = 0;       // number of pairs with chi = 1, with itself included
+};
+
+// A path i and a source j that is in its ball or that it adopted. A path that is a source is paired
+// with itself too.
+struct ExplainedPair {
+  std::uint32_t path = 0, vertex = 0;  // places in ExplainResult::paths, ::vertices
+  float distance = 0;                  // from x_i to x_j, world units
+  std::uint32_t refusers = 0;          // bit k: term k of filter::kTermNames; 0 for the path itself
+  float area = 1;                      // A_j of [disk], 1 for [average]
+  bool in_ball = false, averaged = false, self = false;
+};
+
+struct ExplainResult {
+  ExplainRequest request;
+  std::vector<std::uint32_t> widths;  // width of each camera's picture
+  std::uint64_t passes = 0;           // number of selected passes
+  std::uint64_t blocks = 0;           // number of blocks that hold a path of the pixel
+  // Every record that occurs in a path or a pair, once, in the order of the dump, with every
+  // channel of the file that a term can compare.
+  run::BlockRecords vertices;
+  std::vector<std::uint64_t> record;  // number of each vertex in the dump
+  std::vector<std::uint32_t> pass;
+  std::vector<bool> is_source;
+  std::vector<Rgb>
+      value;  // the value averaged: c_j, c_j / rho_j, or the result of the previous iteration
+  std::vector<ExplainedPath> paths;  // in the order of the dump
+  std::vector<ExplainedPair> pairs;  // by path, then by record
+};
+
+// Explains what psf filter does with the same parameters; of several iterations it explains the
+// last. Reads the pixel numbers of all selected paths, and the whole blocks that hold a path of
+// this pixel. Throws Error{usage} for a camera, pixel, path or passes that the dump does not have
+// and for other estimators, Error{bad_input} where no path falls into the pixel, Error{limit} above
+// `most_pairs`, Error{interrupted}, and what filter_dump() throws.
+[[nodiscard]] ExplainResult explain(const run::Dump& dump, const ExplainRequest& request);
+
+}  // namespace psf::explain

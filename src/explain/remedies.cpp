@@ -1,0 +1,182 @@
+#include "explain/remedies.h"
+
+#include <algorithm>
+#include <numbers>
+#include <optional>
+#include <span>
+
+#include "filter/values.h"
+
+namespace psf::explain {
+namespace {
+
+// Places in filter::kTermNames.
+enum Term : std::size_t {
+  kNormal,
+  kReflectance,
+  kVisibility,
+  kHitDistance,
+  kPlane,
+  kDirection,
+  kMaterial,
+  kGloss
+};
+
+// Thresholds that a person would try, from the loosest to the strictest.
+constexpr std::array kCosines = {0.5f, 0.7f, 0.8f, 0.9f, 0.95f, 0.98f, 0.99f, 0.995f, 0.999f};
+constexpr std::array kDifferences = {1.0f, 0.5f, 0.2f, 0.1f, 0.05f, 0.02f, 0.01f, 0.005f};
+constexpr std::array kLobes = {4.0f, 2.0f, 1.0f, 0.5f, 0.25f};
+constexpr std::array kOn = {1.0f};
+
+// The thresholds to try for a term: those that are stricter than its threshold in use, if any.
+// Empty where the file lacks the term's channel.
+std::span<const float> ladder(const ExplainResult& e, std::size_t term) {
+  const filter::WeightTerms& on = e.request.parameters.weights;
+  const run::BlockRecords& v = e.vertices;
+  const auto up = [](std::span<const float> all, const std::optional<float>& t) {
+    return all.subspan(static_cast<std::size_t>(
+        t ? std::upper_bound(all.begin(), all.end(), *t) - all.begin() : 0));
+  };
+  const auto down = [](std::span<const float> all, const std::optional<float>& t) {
+    return all.subspan(static_cast<std::size_t>(
+        t ? std::upper_bound(all.begin(), all.end(), *t, std::greater<>()) - all.begin() : 0));
+  };
+  const auto flag = [](bool has, bool is_on) {
+    return has && !is_on ? std::span<const float>(kOn) : std::span<const float>();
+  };
+  switch (term) {
+    case kNormal:
+      return v.normal.empty() ? std::span<const float>() : up(kCosines, on.normal);
+    case kReflectance:
+      return v.reflectance.empty() ? std::span<const float>() : down(kDifferences, on.reflectance);
+    case kVisibility:
+      return flag(!v.visibility.empty(), on.visibility);
+    case kHitDistance:
+      return v.hit_distance.empty() ? std::span<const float>()
+                                    : down(kDifferences, on.hit_distance);
+    case kPlane:
+      return v.normal.empty() ? std::span<const float>() : down(kDifferences, on.plane);
+    case kDirection:
+      return v.direction.empty() ? std::span<const float>() : up(kCosines, on.direction);
+    case kGloss:
+      return v.normal.empty() || v.direction.empty() || v.roughness.empty()
+                 ? std::span<const float>()
+                 : down(kLobes, on.gloss);
+    default:
+      return flag(!v.material.empty(), on.material);
+  }
+}
+
+filter::WeightTerms only(std::size_t term, float threshold) {
+  filter::WeightTerms terms = filter::WeightTerms::none();
+  switch (term) {
+    case kNormal:
+      terms.normal = threshold;
+      break;
+    case kReflectance:
+      terms.reflectance = threshold;
+      break;
+    case kVisibility:
+      terms.visibility = true;
+      break;
+    case kHitDistance:
+      terms.hit_distance = threshold;
+      break;
+    case kPlane:
+      terms.plane = threshold;
+      break;
+    case kDirection:
+      terms.direction = threshold;
+      break;
+    case kGloss:
+      terms.gloss = threshold;
+      break;
+    default:
+      terms.material = true;
+      break;
+  }
+  return terms;
+}
+
+}  // namespace
+
+std::array<bool, filter::kTermCount> terms_on(const filter::WeightTerms& terms) {
+  return {terms.normal.has_value(), terms.reflectance.has_value(),
+          terms.visibility,         terms.hit_distance.has_value(),
+          terms.plane.has_value(),  terms.direction.has_value(),
+          terms.material,           terms.gloss.has_value()};
+}
+
+Colour PixelIf::unfiltered(std::uint32_t vertex) const {
+  return e_.vertices.unfiltered.empty() ? Colour(0, 0, 0) : wide(e_.vertices.unfiltered[vertex]);
+}
+
+void PixelIf::Averaged::add(const Rgb& value, float area) {
+  sum += double{area} * wide(value);
+  ++count;
+}
+
+Colour PixelIf::reflected(const ExplainedPath& path, const Averaged& averaged) const {
+  const Colour alpha = wide(e_.vertices.throughput[path.vertex]);
+  if (averaged.count == 0) return alpha * wide(path.c_bar);
+  const double r = double{path.radius};
+  const filter::Parameters& parameters = e_.request.parameters;
+  const bool disk =
+      parameters.estimator == filter::Estimator::disk && path.radius * path.radius > 0;
+  Colour mean =
+      averaged.sum / (disk ? std::numbers::pi * r * r : static_cast<double>(averaged.count));
+  if (!parameters.demodulate) return alpha * mean;
+  const Rgb& rho = e_.vertices.reflectance[path.vertex];
+  for (int c = 0; c < 3; ++c) mean[c] *= rho[c] > 0 ? double{rho[c]} : 1;
+  return alpha * mean;
+}
+
+double Remedy::gain(std::uint64_t all_leaking, std::uint64_t all_others) const {
+  const auto share = [](std::uint64_t part, std::uint64_t all) {
+    return all == 0 ? 0 : static_cast<double>(part) / static_cast<double>(all);
+  };
+  return share(leaking, all_leaking) - share(others, all_others);
+}
+
+std::vector<Remedy> find_remedies(const ExplainResult& explanation, const PixelIf& pixel_if,
+                                  const std::vector<bool>& leaking) {
+  const ExplainResult& e = explanation;
+  std::vector<std::pair<double, Remedy>> found;
+  for (std::size_t term = 0; term < filter::kTermCount; ++term) {
+    std::optional<std::pair<double, Remedy>> best;
+    for (const float threshold : ladder(e, term)) {
+      const filter::Weights weights(e.vertices.view(), only(term, threshold));
+      const auto passes = [&](const ExplainedPair& pair) {
+        const ExplainedPath& path = e.paths[pair.path];
+        return weights.pass(path.vertex, pair.vertex, path.radius);
+      };
+      Remedy remedy;
+      remedy.term = term;
+      if (term != kVisibility && term != kMaterial) remedy.threshold = threshold;
+      std::uint64_t all[2] = {0, 0};
+      for (const ExplainedPair& pair : e.pairs) {
+        if (!pair.averaged || pair.self) continue;
+        ++all[leaking[pair.vertex] ? 1 : 0];
+        if (!passes(pair)) ++(leaking[pair.vertex] ? remedy.leaking : remedy.others);
+      }
+      const double gain = remedy.gain(all[1], all[0]);
+      if (remedy.leaking + remedy.others == 0 || (best && best->first >= gain)) continue;
+      best.emplace(gain, remedy);
+    }
+    if (!best) continue;
+    const filter::Weights weights(e.vertices.view(),
+                                  only(term, best->second.threshold.value_or(1)));
+    best->second.pixel = pixel_if([&](const ExplainedPair& pair) {
+      const ExplainedPath& path = e.paths[pair.path];
+      return pair.refusers == 0 && weights.pass(path.vertex, pair.vertex, path.radius);
+    });
+    found.push_back(*best);
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Remedy> remedies;
+  for (const auto& [gain, remedy] : found) remedies.push_back(remedy);
+  return remedies;
+}
+
+}  // namespace psf::explain

@@ -1,0 +1,102 @@
+// Ray queries by Embree: building its scene from ours.
+#include "render/accel/accel.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include "core/error.h"
+
+namespace psf::render {
+
+namespace {
+
+const char* describe(RTCError error) {
+  switch (error) {
+    case RTC_ERROR_OUT_OF_MEMORY:
+      return "out of memory; use a smaller scene";
+    case RTC_ERROR_UNSUPPORTED_CPU:
+      return "this processor lacks SSE2";
+    case RTC_ERROR_INVALID_ARGUMENT:
+      return "invalid argument";
+    case RTC_ERROR_INVALID_OPERATION:
+      return "invalid operation";
+    case RTC_ERROR_CANCELLED:
+      return "cancelled";
+    default:
+      return "unknown error";
+  }
+}
+
+// Embree releases what it was given with the scene; this one reference is ours.
+struct ReleaseGeometry {
+  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+};
+using Geometry = std::unique_ptr<RTCGeometryTy, ReleaseGeometry>;
+
+}  // namespace
+
+Accel::Accel(const Scene& scene) : device_(rtcNewDevice(nullptr)) {
+  check("no device");
+  scene_.reset(rtcNewScene(device_.get()));
+  check("no scene");
+  // Robust: no ray passes between two triangles that share an edge.
+  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    add_mesh(scene.meshes[m], static_cast<unsigned>(m));
+  }
+  add_spheres(scene.spheres, static_cast<unsigned>(scene.meshes.size()));
+  rtcCommitScene(scene_.get());
+  check("build");
+
+  RTCBounds bounds;
+  rtcGetSceneBounds(scene_.get(), &bounds);
+  const Vec3 lower(bounds.lower_x, bounds.lower_y, bounds.lower_z);
+  const Vec3 upper(bounds.upper_x, bounds.upper_y, bounds.upper_z);
+  if (lower.x <= upper.x) {
+    center_ = (lower + upper) * 0.5f;
+    radius_ = std::sqrt(length_sq(upper - lower)) * 0.5f;
+  }
+}
+
+void Accel::add_mesh(const Mesh& mesh, unsigned id) {
+  if (mesh.triangles.empty()) return;
+  const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+  const std::size_t count = mesh.positions.size();
+  // Embree reads 16 bytes at each 12-byte position, so the last one needs room behind it.
+  if (mesh.positions.capacity() > count) {
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                               mesh.positions.data(), 0, sizeof(Vec3), count);
+  } else {
+    void* copy = rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
+                                         RTC_FORMAT_FLOAT3, sizeof(Vec3), count);
+    if (copy != nullptr) std::memcpy(copy, mesh.positions.data(), count * sizeof(Vec3));
+  }
+  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                             mesh.triangles.data(), 0, sizeof(mesh.triangles[0]),
+                             mesh.triangles.size());
+  rtcCommitGeometry(geometry.get());
+  rtcAttachGeometryByID(scene_.get(), geometry.get(), id);
+  check(fmt::format("mesh '{}'", mesh.name));
+}
+
+void Accel::add_spheres(const std::vector<Sphere>& spheres, unsigned id) {
+  if (spheres.empty()) return;
+  points_.reserve(spheres.size());
+  for (const Sphere& s : spheres) points_.push_back({s.center.x, s.center.y, s.center.z, s.radius});
+  const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT));
+  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                             points_.data(), 0, sizeof(Point), points_.size());
+  rtcCommitGeometry(geometry.get());
+  rtcAttachGeometryByID(scene_.get(), geometry.get(), id);
+  check("spheres");
+}
+
+void Accel::check(const std::string& what) const {
+  const RTCError error = rtcGetDeviceError(device_.get());
+  if (error == RTC_ERROR_NONE) return;
+  throw Error(ErrorCode::limit, fmt::format("Embree: {}: {}", what, describe(error)));
+}
+
+}  // namespace psf::render

@@ -1,0 +1,96 @@
+// Ray queries against the surfaces of a scene, answered by Embree.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "core/vec.h"
+#include "render/accel/embree.h"
+#include "render/scene/scene.h"
+
+namespace psf::render {
+
+// For `geometry` < meshes.size(), mesh number `geometry` was hit: `primitive` is the triangle, u
+// and v are the barycentric weights of its second and third corner. For `geometry` == meshes.size()
+// a sphere was hit, and `primitive` is its number.
+struct Hit {
+  float distance = std::numeric_limits<float>::infinity();
+  float u = 0, v = 0;
+  std::uint32_t geometry = RTC_INVALID_GEOMETRY_ID, primitive = 0;
+  Vec3 normal{0, 0, 0};  // Embree's geometric normal, not of unit length
+};
+
+class Accel {
+ public:
+  // Uses the buffers of the scene, which must outlive this object. Throws Error{limit} where Embree
+  // reports an error.
+  explicit Accel(const Scene& scene);
+
+  // Finds the nearest hit at a distance in (0, reach]; returns false where there is none.
+  // `direction` is a unit vector.
+  [[nodiscard]] bool intersect(const Vec3& origin, const Vec3& direction, Hit& hit,
+                               float reach = std::numeric_limits<float>::infinity()) const {
+    RTCRayHit query;
+    set_ray(query.ray, origin, direction, reach);
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    embree_intersect(scene_.get(), query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    hit = {query.ray.tfar,   query.hit.u,      query.hit.v,
+           query.hit.geomID, query.hit.primID, {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z}};
+    return true;
+  }
+
+  // Whether any surface lies at origin + t * direction for t in (0, reach]. `direction` may have
+  // any length.
+  [[nodiscard]] bool occluded(const Vec3& origin, const Vec3& direction, float reach) const {
+    RTCRay ray;
+    set_ray(ray, origin, direction, reach);
+    embree_occluded(scene_.get(), ray);
+    return ray.tfar < 0;
+  }
+
+  // A sphere around all surfaces; radius 1 for a scene without any.
+  [[nodiscard]] const Vec3& center() const { return center_; }
+  [[nodiscard]] float radius() const { return radius_; }
+
+ private:
+  static void set_ray(RTCRay& ray, const Vec3& origin, const Vec3& direction, float reach) {
+    ray.org_x = origin.x;
+    ray.org_y = origin.y;
+    ray.org_z = origin.z;
+    ray.tnear = 0;
+    ray.dir_x = direction.x;
+    ray.dir_y = direction.y;
+    ray.dir_z = direction.z;
+    ray.time = 0;
+    ray.tfar = reach;
+    ray.mask = ~0u;
+    ray.id = 0;
+    ray.flags = 0;
+  }
+
+  struct ReleaseDevice {
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+  };
+  struct ReleaseScene {
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+  };
+  struct alignas(16) Point {
+    float x, y, z, radius;
+  };
+
+  void add_mesh(const Mesh& mesh, unsigned id);
+  void add_spheres(const std::vector<Sphere>& spheres, unsigned id);
+  void check(const std::string& what) const;
+
+  std::unique_ptr<RTCDeviceTy, ReleaseDevice> device_;
+  std::unique_ptr<RTCSceneTy, ReleaseScene> scene_;
+  std::vector<Point> points_;
+  Vec3 center_{0, 0, 0};
+  float radius_ = 1;
+};
+
+}  // namespace psf::render

@@ -1,0 +1,190 @@
+// How a surface scatters: evaluation and sampling of its lobes.
+#include "render/light/bsdf.h"
+
+namespace psf::render {
+
+namespace {
+
+// Below it a rough lobe's density overflows.
+constexpr float kLeastCosine = 1e-7f;
+
+}  // namespace
+
+Bsdf::Bsdf(const Material& material, const Scene& scene, const Vec2& uv, bool front,
+           const CoatAlbedo* coat)
+    : reflectance_(material.reflectance), specular_(material.specular) {
+  const bool glass = material.kind == MaterialKind::glass;
+  if (!front && !material.two_sided && !glass) return;
+  const auto texture = [&](int index) -> const Texture& {
+    return scene.textures[static_cast<std::size_t>(index)];
+  };
+  if (material.reflectance_texture != kNone) {
+    reflectance_ = reflectance_ * texture(material.reflectance_texture).at(uv);
+  }
+  const bool coated = material.kind == MaterialKind::coat || material.kind == MaterialKind::gloss;
+  if (material.kind == MaterialKind::conductor || coated) {
+    roughness_ = material.roughness;
+    metalness_ = material.kind == MaterialKind::conductor ? 1
+                 : material.kind == MaterialKind::coat    ? material.metalness
+                                                          : 0;
+    if (material.roughness_metalness_texture != kNone) {
+      const Rgb factors = texture(material.roughness_metalness_texture).at(uv);
+      roughness_ *= factors.y;
+      if (material.kind == MaterialKind::coat) metalness_ *= factors.z;
+    }
+    roughness_ = std::clamp(roughness_, 0.0f, 1.0f);
+    metalness_ = std::clamp(metalness_, 0.0f, 1.0f);
+    alpha_ = roughness_ * roughness_;
+  }
+  switch (material.kind) {
+    case MaterialKind::diffuse:
+      lobes_ = kDiffuse;
+      break;
+    case MaterialKind::mirror:
+      lobes_ = kGlossy;
+      mirror_ = true;
+      break;
+    case MaterialKind::glass:
+      lobes_ = kGlass;
+      eta_ = front ? material.ior : 1 / material.ior;
+      break;
+    case MaterialKind::conductor:
+      lobes_ = kGlossy;
+      break;
+    case MaterialKind::coat:
+      lobes_ = metalness_ < 1 && !is_black(reflectance_) ? kDiffuse | kGlossy : kGlossy;
+      eta_ = material.ior;
+      coat_ = coat->row(roughness_);
+      break;
+    case MaterialKind::gloss:
+      lobes_ = is_black(reflectance_) ? kGlossy : kDiffuse | kGlossy;
+      coat_ = coat->row(roughness_);
+      edge_ = coat->edge()->row(roughness_);
+      break;
+  }
+}
+
+Rgb Bsdf::glossy_fresnel(float cosine) const {
+  if (mirror_) return reflectance_;
+  if (edge_.lower != nullptr) return fresnel_schlick(specular_, cosine);
+  Rgb f(0, 0, 0);
+  if (metalness_ > 0) f = fresnel_schlick(reflectance_, cosine) * metalness_;
+  if (metalness_ < 1) {
+    const float d = (1 - metalness_) * fresnel_dielectric(cosine, eta_);
+    f += Rgb(d, d, d);
+  }
+  return f;
+}
+
+Rgb Bsdf::gloss_albedo(float white, float edge) const {
+  return specular_ * white + (Rgb(1) - specular_) * edge;
+}
+
+Rgb Bsdf::diffuse(float o_z, float i_z) const {
+  if (coat_.lower == nullptr) return reflectance_ * kInvPi;
+  if (edge_.lower != nullptr) {
+    const auto left = [&](float mu) { return Rgb(1) - gloss_albedo(coat_.at(mu), edge_.at(mu)); };
+    Rgb mean = Rgb(1) - gloss_albedo(coat_.mean, edge_.mean);
+    for (int c = 0; c < 3; ++c) mean[c] = std::max(1e-6f, mean[c]);
+    return reflectance_ * left(o_z) * left(i_z) / mean * kInvPi;
+  }
+  const float through = (1 - coat_.at(o_z)) * (1 - coat_.at(i_z)) / std::max(1e-6f, 1 - coat_.mean);
+  return reflectance_ * (kInvPi * (1 - metalness_) * through);
+}
+
+float Bsdf::glossy_probability(const Vec3& o) const {
+  if (lobes_ != (kDiffuse | kGlossy)) return (lobes_ & kGlossy) != 0 ? 1.0f : 0.0f;
+  const float coat = coat_.at(o.z);
+  float glossy =
+      (1 - metalness_) * coat + metalness_ * luminance(fresnel_schlick(reflectance_, o.z));
+  float base = (1 - metalness_) * (1 - coat) * luminance(reflectance_);
+  if (edge_.lower != nullptr) {
+    const Rgb gloss = gloss_albedo(coat, edge_.at(o.z));
+    glossy = luminance(gloss);
+    base = luminance((Rgb(1) - gloss) * reflectance_);
+  }
+  // Neither lobe is ever starved: a path of the rarer one would weigh too much.
+  return glossy + base > 0 ? std::clamp(glossy / (glossy + base), 0.05f, 0.95f) : 0.5f;
+}
+
+Rgb Bsdf::albedo() const {
+  const bool has_diffuse = (lobes_ & kDiffuse) != 0, has_glossy = (lobes_ & kGlossy) != 0;
+  if (has_diffuse == has_glossy) {
+    if (!has_diffuse) return reflectance_;
+    const Rgb f0 = glossy_fresnel(1);
+    if (edge_.lower != nullptr) return f0 + reflectance_ * (Rgb(1) - f0);
+    return f0 + reflectance_ * ((1 - metalness_) * (1 - fresnel_dielectric(1, eta_)));
+  }
+  return has_diffuse ? reflectance_ : glossy_fresnel(1);
+}
+
+Rgb Bsdf::evaluate(const Vec3& o, const Vec3& i, float& pdf) const {
+  pdf = 0;
+  Rgb f(0, 0, 0);
+  if (o.z < kLeastCosine || i.z <= 0) return f;
+  if (lobes_ == kDiffuse) {
+    pdf = i.z * kInvPi;
+    return diffuse(o.z, i.z) * i.z;
+  }
+  const float p_glossy = glossy_probability(o);
+  if ((lobes_ & kDiffuse) != 0) {
+    f = diffuse(o.z, i.z) * i.z;
+    pdf = (1 - p_glossy) * i.z * kInvPi;
+  }
+  if ((lobes_ & kGlossy) != 0 && alpha_ >= kLeastAlpha) {
+    const Ggx ggx{alpha_ * alpha_};
+    const Vec3 h = normalize(o + i);
+    const float d = ggx.d(h) / (4 * o.z);
+    f += glossy_fresnel(std::min(1.0f, dot(o, h))) * (d * ggx.g2(o, i));
+    pdf += p_glossy * d * ggx.g1(o);
+  }
+  return f;
+}
+
+bool Bsdf::sample(const Vec3& o, const Vec2& u, float choice, BsdfSample& sample) const {
+  if (o.z < kLeastCosine) return false;
+  if (lobes_ == kGlass) return sample_glass(o, choice, sample);
+  if (lobes_ == kDiffuse && coat_.lower == nullptr) {
+    sample.direction = cosine_hemisphere(u);
+    sample.weight = reflectance_;
+    sample.pdf = sample.direction.z * kInvPi;
+    return sample.pdf > 0;
+  }
+  const float p_glossy = glossy_probability(o);
+  if (choice < p_glossy && (lobes_ & kGlossy) != 0) {
+    if (alpha_ < kLeastAlpha) {
+      sample.direction = Vec3(-o.x, -o.y, o.z);
+      sample.weight = glossy_fresnel(o.z) * (1 / p_glossy);
+      sample.pdf = 0;
+      return true;
+    }
+    sample.direction = reflect(o, Ggx{alpha_ * alpha_}.sample(o, u));
+  } else {
+    sample.direction = cosine_hemisphere(u);
+  }
+  const Rgb f = evaluate(o, sample.direction, sample.pdf);
+  if (!(sample.pdf > 0)) return false;
+  sample.weight = f * (1 / sample.pdf);
+  return true;
+}
+
+bool Bsdf::sample_glass(const Vec3& o, float choice, BsdfSample& sample) const {
+  sample.pdf = 0;
+  const float reflected = fresnel_dielectric(std::min(1.0f, o.z), eta_);
+  if (choice < reflected) {
+    sample.direction = Vec3(-o.x, -o.y, o.z);
+    sample.weight = Rgb(1, 1, 1);
+    return true;
+  }
+  const float inverse = 1 / eta_;
+  const float cosine_sq = 1 - (1 - o.z * o.z) * inverse * inverse;
+  if (cosine_sq <= 0) return false;
+  sample.direction = normalize(Vec3(-o.x * inverse, -o.y * inverse, -std::sqrt(cosine_sq)));
+  // Radiance is denser in the denser medium: the camera's path pays here what it got or gets back
+  // elsewhere.
+  sample.eta_scale = inverse * inverse;
+  sample.weight = reflectance_ * sample.eta_scale;
+  return true;
+}
+
+}  // namespace psf::render

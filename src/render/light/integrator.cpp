@@ -1,0 +1,39 @@
+// Integrators by name.
+#include "render/light/integrator.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "core/error.h"
+#include "render/light/integrators.h"
+
+namespace psf::render {
+
+const std::vector<std::string>& integrator_names() {
+  static const std::vector<std::string> names{"path", "direct", "ao"};
+  return names;
+}
+
+PathRecord in_world(PathRecord record, const Space& space) {
+  if (space.is_world()) return record;
+  if (record.has_vertex) record.position = Vec3(space.world(record.position));
+  record.distance = space.world_length(record.distance);
+  record.hit_distance = space.world_length(record.hit_distance);
+  return record;
+}
+
+std::unique_ptr<Integrator> make_integrator(const Scene& scene, const IntegratorSettings& given) {
+  IntegratorSettings settings = given;
+  settings.ao_distance = scene.space.local_length(double{given.ao_distance});
+  if (settings.split < 1 || settings.max_depth < 1 || !(settings.ao_distance > 0)) {
+    throw Error(ErrorCode::usage, "split, max depth and AO distance must be positive");
+  }
+  if (settings.name == "path" || settings.name == "direct") {
+    return make_path_integrator(scene, settings);
+  }
+  if (settings.name == "ao") return make_ao_integrator(scene, settings);
+  throw Error(ErrorCode::usage, fmt::format("no integrator '{}': use one of {}", settings.name,
+                                            fmt::join(integrator_names(), ", ")));
+}
+
+}  // namespace psf::render

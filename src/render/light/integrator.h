@@ -1,0 +1,96 @@
+// Turns a camera ray into the record of its path. This is the only interface between light
+// transport and the rest of the program.
+//
+// x_i is the first vertex of the camera segment whose roughness is at least `vertex_roughness`;
+// perfect mirrors and glass never qualify. Where only the diffuse base of a coat qualifies, coat or
+// base is chosen at random and alpha_i is divided by its probability, so x_i lies on the base or on
+// a surface seen in the coat. A path that meets the back of a one-sided material ends without a
+// vertex.
+//
+// The pixel's value is the mean of u_i + alpha_i c_i, without bias except that of max_depth. u_i is
+// the light that does not pass through x_i: emission met on the camera segment, including that of
+// x_i's own surface; the sky; and light sampled at glossy vertices before x_i.
+//
+//   path    Light sampling and scattering are combined by the power heuristic, with Russian
+//           roulette. At x_i every light is sampled once where there are at most 32 besides the
+//           sky; otherwise, and at all other vertices, one light is sampled, chosen by power. Bit
+//           l mod 32 of `visibility` is set where the sample of light l was unoccluded; the sky has
+//           no bit. A constant sky is found by scattering alone, an environment map is sampled too.
+//   direct  As `path`, but without light reflected between surfaces after x_i: the path ends at the
+//           depth of x_i.
+//   ao      c_i is grey: 1 where a cosine-weighted ray from x_i meets nothing within ao_distance,
+//           else 0. u_i and visibility are 0; lights and sky have no influence.
+//
+// With `split`, c_i is the mean over that many continuations; visibility and hit_distance are those
+// of the first.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/vec.h"
+#include "render/sample/sampler.h"
+#include "render/scene/scene.h"
+
+namespace psf::render {
+
+struct Ray {
+  Vec3 origin, direction;  // direction is unit
+};
+
+// Everything that the path-vertex buffer stores of one path; the symbols are those of
+// src/filter/README.md. An integrator gives lengths in the unit of the scene's space; the file has
+// them in world units.
+struct PathRecord {
+  bool has_vertex = false;    // x_i exists
+  bool shaded = false;        // c_i was computed, or would have been
+  Vec3 position{0, 0, 0};     // x_i
+  Vec3 normal{0, 0, 0};       // n_i, unit shading normal on the side of the camera
+  Rgb reflectance{0, 0, 0};   // rho_i, albedo
+  Rgb throughput{0, 0, 0};    // alpha_i, throughput of the camera segment up to x_i
+  Rgb contribution{0, 0, 0};  // c_i, radiance scattered at x_i toward the camera, without emission
+  Rgb unfiltered{0, 0, 0};    // u_i
+  float distance = 0;         // d_i, length of the camera segment
+  std::uint32_t visibility = 0;  // bit l mod 32 set: light l was seen from x_i
+  float hit_distance = 0;      // length of the first ray scattered from x_i; infinity for a miss or
+                               // absorption; NaN where the path is not shaded
+  Vec3 direction{0, 0, 0};     // omega_i, unit, from x_i to the previous vertex or the camera
+  std::uint32_t material = 0;  // index in Scene::materials
+  float roughness = 0;         // q_i, perceptual, of the smoothest lobe; 1 for diffuse
+};
+
+// Converts `record`, whose lengths and positions are those of `space`, to world units.
+[[nodiscard]] PathRecord in_world(PathRecord record, const Space& space);
+
+struct IntegratorSettings {
+  std::string name = "path";      // path, direct, ao
+  int max_depth = 16;             // most surface interactions of a path, with the camera segment's
+  int roulette_depth = 4;         // Russian roulette starts after this many, but never at x_i
+  float vertex_roughness = 0.3f;  // x_i is the first vertex with at least this perceptual roughness
+  std::uint32_t split = 1;        // continuations from x_i, averaged into c_i
+  // For ao, in world units: surfaces farther away than this do not occlude.
+  float ao_distance = std::numeric_limits<float>::infinity();
+};
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  // Traces a path. Without `shade` it stops at x_i, and c_i is not computed. Adds the number of
+  // rays that it shot to `rays`. Thread-safe.
+  [[nodiscard]] virtual PathRecord trace(const Ray& camera_ray, Sampler& sampler, bool shade,
+                                         std::uint64_t& rays) const = 0;
+  // The names of the lights in the order of their numbers; light l has visibility bit l mod 32.
+  [[nodiscard]] virtual std::vector<std::string> light_names() const = 0;
+};
+
+// Builds the acceleration structure (Embree) and the lights. The scene must outlive the integrator.
+// Throws Error{usage} for an unknown name, with a list of the known ones, and for settings out of
+// range.
+[[nodiscard]] std::unique_ptr<Integrator> make_integrator(const Scene& scene,
+                                                          const IntegratorSettings& settings);
+[[nodiscard]] const std::vector<std::string>& integrator_names();
+
+}  // namespace psf::render

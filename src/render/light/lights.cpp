@@ -1,0 +1,179 @@
+// All light sources of a scene: sampling, densities, emission.
+#include "render/light/lights.h"
+
+#include "render/light/frame.h"
+
+namespace psf::render {
+
+bool Lights::has_extent(std::size_t light) const {
+  return light == count() || lights_[light].kind >= Kind::sun;
+}
+
+std::size_t Lights::choose(float u, float& probability) const {
+  const std::size_t light = choice_.sample(u);
+  probability = choice_.probability(light);
+  return light;
+}
+
+Rgb Lights::radiance(const Record& light, const Vec2& uv) {
+  return light.texture == nullptr ? light.radiance : light.radiance * light.texture->at(uv);
+}
+
+bool Lights::sample(std::size_t light, const Surface& from, const Vec2& u,
+                    LightSample& sample) const {
+  if (light == count()) {
+    sample.direction = sky_.sample(u, sample.pdf);
+    if (!(sample.pdf > 0)) return false;
+    sample.infinite = true;
+    sample.weight = sky_.radiance(sample.direction) * (1 / sample.pdf);
+    return true;
+  }
+  const Record& r = lights_[light];
+  switch (r.kind) {
+    case Kind::directional:
+      sample.direction = r.direction;
+      sample.infinite = true;
+      sample.weight = r.radiance;
+      sample.pdf = 0;
+      return true;
+    case Kind::sun:
+      sample.direction = Frame(r.direction).to_world(uniform_cone(u, r.extent));
+      sample.infinite = true;
+      sample.pdf = cone_pdf(r.extent);
+      sample.weight = r.radiance * (1 / sample.pdf);
+      return true;
+    case Kind::mesh:
+      return sample_mesh(r, from, u, sample);
+    case Kind::sphere: {
+      // On the light itself, rounding must not decide on which side.
+      const bool own = from.emitter == static_cast<int>(light);
+      if (own && from.front) return false;
+      return sample_sphere(r, from, own, u, sample);
+    }
+    case Kind::point:
+    case Kind::spot:
+      break;
+  }
+  const Vec3 toward = r.position - from.position;
+  const float distance_sq = length_sq(toward);
+  if (!(distance_sq > 0)) return false;
+  sample.direction = toward * (1 / std::sqrt(distance_sq));
+  sample.target = r.position;
+  sample.infinite = false;
+  sample.weight = r.radiance * (1 / distance_sq);
+  sample.pdf = 0;
+  if (r.kind == Kind::spot) {
+    const float cosine = -dot(sample.direction, r.direction);
+    if (cosine <= r.cos_outer) return false;
+    if (cosine < r.cos_inner) {
+      const float t = (cosine - r.cos_outer) / (r.cos_inner - r.cos_outer);
+      sample.weight *= t * t * (3 - 2 * t);
+    }
+  }
+  return true;
+}
+
+bool Lights::sample_mesh(const Record& light, const Surface& from, Vec2 u,
+                         LightSample& sample) const {
+  const std::size_t k = light.areas.sample(u.x);
+  const Triangle& triangle = triangles_[light.first + k];
+  const float root = std::sqrt(u.x), b1 = root * (1 - u.y), b2 = root * u.y;
+  const Vec3 point = triangle.corner + triangle.edge1 * b1 + triangle.edge2 * b2;
+  const Vec3 toward = point - from.position;
+  const float distance_sq = length_sq(toward);
+  if (!(distance_sq > 0)) return false;
+  sample.direction = toward * (1 / std::sqrt(distance_sq));
+  float cosine = -dot(sample.direction, triangle.normal);
+  const float side = cosine > 0 ? 1.0f : -1.0f;
+  if (side < 0 && !light.both_sides) return false;
+  cosine *= side;
+  sample.pdf = distance_sq * light.extent / cosine;
+  if (!(cosine > 0) || !std::isfinite(sample.pdf)) return false;
+  sample.target = point + triangle.normal * (side * triangle.offset);
+  sample.infinite = false;
+  Vec2 uv(b1, b2);
+  if (light.texture != nullptr && !light.mesh->uvs.empty()) {
+    const auto& [a, b, c] = light.mesh->triangles[k];
+    uv = light.mesh->uvs[a] * (1 - b1 - b2) + light.mesh->uvs[b] * b1 + light.mesh->uvs[c] * b2;
+  }
+  sample.weight = radiance(light, uv) * (1 / sample.pdf);
+  return true;
+}
+
+bool Lights::sample_sphere(const Record& light, const Surface& from, bool own, const Vec2& u,
+                           LightSample& sample) {
+  const Vec3 to_center = light.position - from.position;
+  const float distance_sq = length_sq(to_center), radius = light.extent;
+  const float radius_sq = radius * radius;
+  const bool inside = own || distance_sq <= radius_sq;
+  sample.pdf = sphere_pdf(light, from.position, inside);
+  sample.infinite = false;
+  Vec3 normal;
+  float side = 1;
+  if (inside) {
+    if (!light.both_sides) return false;
+    sample.direction = uniform_sphere(u);
+    const float along = dot(to_center, sample.direction);
+    const float reach = along + std::sqrt(std::max(0.0f, along * along + radius_sq - distance_sq));
+    normal = normalize(sample.direction * reach - to_center);
+    side = -1;
+  } else {
+    const float distance = std::sqrt(distance_sq);
+    const Vec3 axis = to_center * (1 / distance);
+    const Vec3 local = uniform_cone(u, one_minus_cos(radius_sq / distance_sq));
+    const Frame frame(axis);
+    sample.direction = frame.to_world(local);
+    // The nearer crossing: its distance from the axis' foot, by the chord's half length.
+    const float sine_sq = local.x * local.x + local.y * local.y;
+    const float half_chord = std::sqrt(std::max(0.0f, radius_sq - distance_sq * sine_sq));
+    normal = normalize(sample.direction * (distance * local.z - half_chord) - to_center);
+  }
+  const float offset = (max_abs(light.position) + radius) * kOffsetScale;
+  sample.target = light.position + normal * (radius + side * offset);
+  sample.weight = radiance(light, direction_to_uv(normal)) * (1 / sample.pdf);
+  return true;
+}
+
+float Lights::sphere_pdf(const Record& light, const Vec3& from, bool inside) {
+  if (inside) return 0.25f * kInvPi;
+  const float sine_sq = light.extent * light.extent / length_sq(light.position - from);
+  return cone_pdf(one_minus_cos(std::min(1.0f, sine_sq)));
+}
+
+float Lights::weight(const Arrival& arrival, std::size_t light, float pdf) const {
+  if (!(arrival.pdf > 0)) return 1;
+  const float chosen = arrival.every ? 1.0f : choice_.probability(light);
+  return chosen > 0 ? mis_weight(arrival.pdf, pdf * chosen) : 1.0f;
+}
+
+Rgb Lights::emitted(const Arrival& arrival, const Surface& hit) const {
+  const auto light = static_cast<std::size_t>(hit.emitter);
+  const Record& r = lights_[light];
+  if (!hit.front && !r.both_sides) return {0, 0, 0};
+  float pdf = 0;
+  if (arrival.pdf > 0) {
+    if (r.kind == Kind::sphere) {
+      pdf = sphere_pdf(r, arrival.from, !hit.front);
+    } else {
+      const float cosine = -dot(arrival.direction, hit.geometric_normal);
+      pdf = length_sq(hit.position - arrival.from) * r.extent / std::max(cosine, 1e-20f);
+    }
+  }
+  return radiance(r, hit.uv) * weight(arrival, light, pdf);
+}
+
+Rgb Lights::escaped(const Arrival& arrival) const {
+  Rgb sum = sky_.radiance(arrival.direction);
+  if (sky_.sampled() && arrival.pdf > 0) {
+    sum *= weight(arrival, count(), sky_.pdf(arrival.direction));
+  }
+  for (const std::size_t s : suns_) {
+    const Record& r = lights_[s];
+    // 1 - cos of the angle between, without cancellation.
+    if (0.5f * length_sq(arrival.direction - r.direction) > r.extent) continue;
+    sum += r.radiance * weight(arrival, s, cone_pdf(r.extent));
+  }
+  return sum;
+}
+
+}  // namespace psf::render

@@ -1,0 +1,102 @@
+// All light sources of a scene: samples them from a point, and weights the light that scattering
+// finds by the density of these samples.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "render/light/distribution.h"
+#include "render/light/environment.h"
+#include "render/light/surface.h"
+
+namespace psf::render {
+
+struct LightSample {
+  Vec3 direction;  // unit, toward the light
+  Vec3 target;     // point on the light, just off its surface; undefined for lights at infinity
+  bool infinite;
+  Rgb weight;  // radiance / pdf; for lights without extent: irradiance on a facing surface
+  float pdf;   // per solid angle; 0 for a light without extent, which scattering never hits
+};
+
+// Lights are numbered: first Scene::lights, then emissive meshes, then emissive spheres, each in
+// the scene's order. An emissive surface of zero area is not a light. The sky has the number
+// count(), but no visibility bit, and can be sampled where it is a map. A directional light with an
+// angle is a disk in the sky that rays can meet.
+class Lights {
+ public:
+  // Tells `shapes` which surfaces emit. `radius`: that of a sphere around the scene. The scene must
+  // outlive this object.
+  Lights(const Scene& scene, Shapes& shapes, float radius);
+
+  [[nodiscard]] std::size_t count() const { return lights_.size(); }  // without the sky
+  [[nodiscard]] bool sky_sampled() const { return sky_.sampled(); }
+  [[nodiscard]] std::vector<std::string> names() const;
+
+  // Samples a point on light `light`, or the sky for count(), as seen from `from`. Returns false
+  // where no light from it can arrive there. Lights without extent do not use `u`.
+  [[nodiscard]] bool sample(std::size_t light, const Surface& from, const Vec2& u,
+                            LightSample& sample) const;
+  [[nodiscard]] bool has_extent(std::size_t light) const;
+
+  // choose() chooses one light, or the sky, by power. choices() is the number of candidates; where
+  // it is 0, choose() must not be called.
+  [[nodiscard]] std::size_t choices() const { return choice_.total() > 0 ? choice_.size() : 0; }
+  [[nodiscard]] std::size_t choose(float u, float& probability) const;
+
+  // A ray that scattering sent from `from`. `pdf`: density of `direction` by scattering, 0 for a
+  // perfect lobe and for the camera, with which light sampling does not compete. `every`: whether
+  // `from` sampled every light, or one chosen by power.
+  struct Arrival {
+    Vec3 from, direction;
+    float pdf;
+    bool every;
+  };
+  // Radiance that `hit` emits toward the arrival's origin, weighted against light sampling.
+  [[nodiscard]] Rgb emitted(const Arrival& arrival, const Surface& hit) const;
+  // Radiance that arrives from infinity, weighted against light sampling.
+  [[nodiscard]] Rgb escaped(const Arrival& arrival) const;
+
+ private:
+  enum class Kind : std::uint8_t { point, spot, directional, sun, mesh, sphere };
+  struct Record {
+    Kind kind;
+    bool both_sides = false;
+    Rgb radiance;      // point, spot: intensity; directional: irradiance; else radiance
+    Vec3 position;     // sphere: centre
+    Vec3 direction;    // directional, sun: toward the light; spot: along its axis
+    float extent = 0;  // sphere: radius; sun: 1 - cos of its angular radius; mesh: 1 / area
+    float cos_inner = 1, cos_outer = 0;
+    const Texture* texture = nullptr;  // texture of the emission
+    const Mesh* mesh = nullptr;
+    std::size_t first = 0;  // mesh: its first triangle in triangles_
+    Distribution areas;     // mesh
+  };
+  struct Triangle {
+    Vec3 corner, edge1, edge2;
+    Vec3 normal;  // unit
+    float offset;
+  };
+
+  float add(const Light& light, float radius);  // these return the power
+  float add(const Mesh& mesh, const Scene& scene);
+  float add(const Sphere& sphere, const Scene& scene);
+  [[nodiscard]] static Rgb radiance(const Record& light, const Vec2& uv);
+  [[nodiscard]] bool sample_mesh(const Record& light, const Surface& from, Vec2 u,
+                                 LightSample& sample) const;
+  // `own`: whether `from` lies on the inside of this sphere.
+  [[nodiscard]] static bool sample_sphere(const Record& light, const Surface& from, bool own,
+                                          const Vec2& u, LightSample& sample);
+  [[nodiscard]] static float sphere_pdf(const Record& light, const Vec3& from, bool inside);
+  [[nodiscard]] float weight(const Arrival& arrival, std::size_t light, float pdf) const;
+
+  std::vector<Record> lights_;
+  std::vector<std::string> names_;
+  std::vector<Triangle> triangles_;
+  std::vector<std::size_t> suns_;
+  EnvironmentLight sky_;
+  Distribution choice_;
+};
+
+}  // namespace psf::render

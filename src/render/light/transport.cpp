@@ -1,0 +1,155 @@
+// What all integrators share: one step of a path at a time.
+#include "render/light/transport.h"
+
+#include <map>
+
+namespace psf::render {
+
+Transport::Transport(const Scene& scene, const IntegratorSettings& settings)
+    : scene_(scene),
+      settings_(settings),
+      accel_(scene),
+      shapes_(scene),
+      lights_(scene, shapes_, accel_.radius()),
+      coats_(scene.materials.size()) {
+  std::map<float, std::shared_ptr<const CoatAlbedo>> tables;
+  std::shared_ptr<const CoatAlbedo> gloss;
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    if (scene.materials[m].kind == MaterialKind::gloss) {
+      if (gloss == nullptr) gloss = std::make_shared<CoatAlbedo>(CoatAlbedo::schlick());
+      coats_[m] = gloss;
+    }
+    if (scene.materials[m].kind != MaterialKind::coat) continue;
+    auto& table = tables[scene.materials[m].ior];
+    if (table == nullptr) table = std::make_shared<CoatAlbedo>(scene.materials[m].ior);
+    coats_[m] = table;
+  }
+}
+
+float Transport::next_surface(const Walk& walk, Surface& surface, std::uint64_t& rays) const {
+  ++rays;
+  Hit hit;
+  if (!accel_.intersect(walk.ray.origin, walk.ray.direction, hit)) {
+    return std::numeric_limits<float>::infinity();
+  }
+  surface = shapes_.surface(hit, walk.ray.direction);
+  return hit.distance;
+}
+
+Vertex Transport::vertex(const Surface& surface, const Vec3& direction) const {
+  const auto m = static_cast<std::size_t>(surface.material);
+  const Frame frame(surface.normal);
+  return {surface, Bsdf(scene_.materials[m], scene_, surface.uv, surface.front, coats_[m].get()),
+          frame, -direction, frame.to_local(-direction)};
+}
+
+Rgb Transport::met(const Walk& walk, const Surface* surface) const {
+  if (surface != nullptr && surface->emitter == kNone) return {0, 0, 0};
+  const Lights::Arrival arrival{walk.from, walk.ray.direction, walk.pdf, walk.every_light};
+  return walk.throughput *
+         (surface != nullptr ? lights_.emitted(arrival, *surface) : lights_.escaped(arrival));
+}
+
+Rgb Transport::direct(const Vertex& v, bool every, Sampler& sampler, std::uint32_t& visibility,
+                      std::uint64_t& rays) const {
+  if (v.bsdf.perfect()) return {0, 0, 0};
+  if (!every) {
+    if (lights_.choices() == 0) return {0, 0, 0};
+    float probability;
+    const std::size_t light = lights_.choose(sampler.next_1d(), probability);
+    return direct_from(light, probability, v, sampler, visibility, rays);
+  }
+  Rgb sum(0, 0, 0);
+  for (std::size_t light = 0; light < lights_.count(); ++light) {
+    sum += direct_from(light, 1, v, sampler, visibility, rays);
+  }
+  if (lights_.sky_sampled()) {
+    std::uint32_t no_bit = 0;
+    sum += direct_from(lights_.count(), 1, v, sampler, no_bit, rays);
+  }
+  return sum;
+}
+
+Rgb Transport::direct_from(std::size_t light, float probability, const Vertex& v, Sampler& sampler,
+                           std::uint32_t& visibility, std::uint64_t& rays) const {
+  const Vec2 u = lights_.has_extent(light) ? sampler.next_2d() : Vec2(0, 0);
+  LightSample sample;
+  if (!lights_.sample(light, v.surface, u, sample)) return {0, 0, 0};
+  const Vec3 local = v.frame.to_local(sample.direction);
+  if (local.z <= 0 || dot(sample.direction, v.surface.geometric_normal) <= 0) return {0, 0, 0};
+
+  ++rays;
+  const Vec3 origin = v.surface.origin_toward(sample.direction);
+  // Both ends lie off their surfaces; stopping a hair short keeps rounding from reaching the
+  // light's own.
+  const bool occluded =
+      sample.infinite
+          ? accel_.occluded(origin, sample.direction, std::numeric_limits<float>::infinity())
+          : accel_.occluded(origin, sample.target - origin, 1 - 0x1p-17f);
+  if (occluded) return {0, 0, 0};
+  if (light < lights_.count()) visibility |= 1u << (light % kEveryLight);
+
+  float scatter_pdf;
+  const Rgb f = v.bsdf.evaluate(v.local, local, scatter_pdf);
+  const float weight = sample.pdf > 0
+                           ? mis_weight(sample.pdf * probability, scatter_pdf) / probability
+                           : 1 / probability;
+  return f * sample.weight * weight;
+}
+
+bool Transport::select_lobe(Vertex& v, Walk& walk, Sampler& sampler) const {
+  if (v.bsdf.straddles(settings_.vertex_roughness)) {
+    const float glossy = v.bsdf.glossy_probability(v.local);
+    const bool take_glossy = sampler.next_1d() < glossy;
+    v.bsdf.keep(take_glossy ? Bsdf::kGlossy : Bsdf::kDiffuse);
+    walk.throughput *= 1 / (take_glossy ? glossy : 1 - glossy);
+  }
+  return !v.bsdf.perfect() && v.bsdf.roughness() >= settings_.vertex_roughness;
+}
+
+bool Transport::scatter(const Vertex& v, Walk& walk, Sampler& sampler) const {
+  BsdfSample sample;
+  const Vec2 u = v.bsdf.perfect() ? Vec2(0, 0) : sampler.next_2d();
+  const float choice = v.bsdf.chooses() ? sampler.next_1d() : 0.0f;
+  if (!v.bsdf.sample(v.local, u, choice, sample)) return false;
+  Vec3 direction = v.frame.to_world(sample.direction);
+  // Where an interpolated normal sends the path through the surface that it should leave (or the
+  // other way): a perfect lobe takes the geometric normal, which has no such trouble; other lobes
+  // absorb.
+  const bool reflected = sample.direction.z > 0;
+  if ((dot(direction, v.surface.geometric_normal) > 0) != reflected) {
+    if (sample.pdf > 0) return false;
+    const Frame flat(v.surface.geometric_normal);
+    if (!v.bsdf.sample(flat.to_local(v.out), u, choice, sample)) return false;
+    direction = flat.to_world(sample.direction);
+  }
+  walk.throughput = walk.throughput * sample.weight;
+  if (is_black(walk.throughput)) return false;
+  walk.eta_scale *= sample.eta_scale;
+  walk.pdf = sample.pdf;
+  walk.from = v.surface.position;
+  walk.ray = {v.surface.origin_toward(direction), normalize(direction)};
+  return true;
+}
+
+bool Transport::survives(Walk& walk, Sampler& sampler) const {
+  if (walk.depth < settings_.roulette_depth) return true;
+  const float q = max_component(walk.throughput) / walk.eta_scale;
+  if (q >= 1) return true;
+  if (sampler.next_1d() >= q) return false;
+  walk.throughput *= 1 / q;
+  return true;
+}
+
+void Transport::record_vertex(const Vertex& v, const Walk& walk, PathRecord& record) const {
+  record.has_vertex = true;
+  record.position = v.surface.position;
+  record.normal = v.surface.normal;
+  record.reflectance = v.bsdf.albedo();
+  record.throughput = walk.throughput;
+  record.direction = v.out;
+  record.material = static_cast<std::uint32_t>(v.surface.material);
+  record.roughness = v.bsdf.least_roughness();
+}
+
+}  // namespace psf::render

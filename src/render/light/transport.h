@@ -1,0 +1,88 @@
+// The common parts of all integrators: the scene prepared for rays, and the steps of a path.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "render/accel/accel.h"
+#include "render/light/bsdf.h"
+#include "render/light/frame.h"
+#include "render/light/integrator.h"
+#include "render/light/lights.h"
+#include "render/light/surface.h"
+
+namespace psf::render {
+
+// One surface interaction: the surface, its scattering, and the direction to the previous vertex.
+struct Vertex {
+  Surface surface;
+  Bsdf bsdf;
+  Frame frame;
+  Vec3 out;    // toward the previous vertex, unit
+  Vec3 local;  // `out` in the frame
+};
+
+// The state of a path that is being traced.
+struct Walk {
+  Ray ray;
+  Rgb throughput{1, 1, 1};
+  float eta_scale = 1;       // change of the throughput by glass that is undone on leaving it
+  float pdf = 0;             // density of ray.direction; 0 for perfect lobes and the camera
+  bool every_light = false;  // the last vertex sampled every light
+  Vec3 from{0, 0, 0};        // the last vertex
+  int depth = 0;             // surface interactions so far
+};
+
+class Transport {
+ public:
+  // Where there are at most this many lights, all are sampled at x_i. Light l has the visibility
+  // bit l mod kEveryLight.
+  static constexpr std::size_t kEveryLight = 32;
+
+  Transport(const Scene& scene, const IntegratorSettings& settings);
+
+  [[nodiscard]] const IntegratorSettings& settings() const { return settings_; }
+  [[nodiscard]] const Accel& accel() const { return accel_; }
+  [[nodiscard]] const Lights& lights() const { return lights_; }
+  [[nodiscard]] bool samples_every_light() const { return lights_.count() <= kEveryLight; }
+
+  // Follows the walk's ray to the next surface and returns the distance; infinity for a miss.
+  [[nodiscard]] float next_surface(const Walk& walk, Surface& surface, std::uint64_t& rays) const;
+  [[nodiscard]] Vertex vertex(const Surface& surface, const Vec3& direction) const;
+
+  // The emitted light that the walk's ray met at `surface`, or in the sky where it is null, times
+  // the walk's throughput and weighted against light sampling.
+  [[nodiscard]] Rgb met(const Walk& walk, const Surface* surface) const;
+
+  // The radiance that `v` scatters directly from the lights, weighted against scattering. With
+  // `every` each light is sampled once, else one light chosen by power. Sets the visibility bit of
+  // each sampled light that `v` sees.
+  [[nodiscard]] Rgb direct(const Vertex& v, bool every, Sampler& sampler, std::uint32_t& visibility,
+                           std::uint64_t& rays) const;
+
+  // Where only one of two lobes is rough enough, keeps one of them at random and divides the
+  // throughput by its probability. Returns whether `v` is then rough enough to be x_i.
+  [[nodiscard]] bool select_lobe(Vertex& v, Walk& walk, Sampler& sampler) const;
+
+  // Sends the walk on from `v`; false where it is absorbed.
+  [[nodiscard]] bool scatter(const Vertex& v, Walk& walk, Sampler& sampler) const;
+  // Russian roulette; false where the path ends.
+  [[nodiscard]] bool survives(Walk& walk, Sampler& sampler) const;
+
+  // Writes everything about x_i that is known when the walk arrives there.
+  void record_vertex(const Vertex& v, const Walk& walk, PathRecord& record) const;
+
+ private:
+  [[nodiscard]] Rgb direct_from(std::size_t light, float probability, const Vertex& v,
+                                Sampler& sampler, std::uint32_t& visibility,
+                                std::uint64_t& rays) const;
+
+  const Scene& scene_;
+  IntegratorSettings settings_;
+  Accel accel_;
+  Shapes shapes_;
+  Lights lights_;
+  std::vector<std::shared_ptr<const CoatAlbedo>> coats_;  // by material; equal ior share a table
+};
+
+}  // namespace psf::render

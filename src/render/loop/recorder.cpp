@@ -1,0 +1,147 @@
+// The table of channels, and the columns behind it.
+#include "render/loop/recorder.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "formats/read/reader.h"
+
+namespace psf::render {
+namespace {
+
+template <class T>
+const void* bytes(const std::vector<T>& values) {
+  return values.data();
+}
+
+}  // namespace
+
+// One row a channel: the file's side and the recorder's.
+struct ColumnTable {
+  struct Row {
+    formats::Channel channel;
+    bool always;
+    const void* (*data)(const Recorder&);
+  };
+  static const std::vector<Row>& rows() {
+    using formats::Type;
+    using R = const Recorder&;
+    static_assert(sizeof(Vec3) == 12 && sizeof(Rgb) == 12, "vectors are stored as they lie");
+    static const std::vector<Row> table{
+        {{"position", Type::f32, 3}, true, [](R r) { return bytes(r.position_); }},
+        {{"normal", Type::f32, 3}, false, [](R r) { return bytes(r.normal_); }},
+        {{"reflectance", Type::f32, 3}, false, [](R r) { return bytes(r.reflectance_); }},
+        {{"throughput", Type::f32, 3}, true, [](R r) { return bytes(r.throughput_); }},
+        {{"contribution", Type::f32, 3}, true, [](R r) { return bytes(r.contribution_); }},
+        {{"unfiltered", Type::f32, 3}, true, [](R r) { return bytes(r.unfiltered_); }},
+        {{"distance", Type::f32, 1}, true, [](R r) { return bytes(r.distance_); }},
+        {{"pixel", Type::u32, 1}, true, [](R r) { return bytes(r.pixel_); }},
+        {{"flags", Type::u8, 1}, true, [](R r) { return bytes(r.flags_); }},
+        {{"camera", Type::u16, 1}, false, [](R r) { return bytes(r.camera_); }},
+        {{"visibility", Type::u32, 1}, false, [](R r) { return bytes(r.visibility_); }},
+        {{"hit_distance", Type::f32, 1}, false, [](R r) { return bytes(r.hit_distance_); }},
+        {{"direction", Type::f32, 3}, false, [](R r) { return bytes(r.direction_); }},
+        {{"material", Type::u32, 1}, false, [](R r) { return bytes(r.material_); }},
+        {{"roughness", Type::f32, 1}, false, [](R r) { return bytes(r.roughness_); }}};
+    return table;
+  }
+};
+
+std::vector<formats::Channel> record_channels(std::span<const std::string> optional) {
+  const auto& rows = ColumnTable::rows();
+  for (const std::string& name : optional) {
+    const auto is_named = [&](const auto& row) { return row.channel.name == name; };
+    if (std::any_of(rows.begin(), rows.end(), is_named)) continue;
+    std::vector<std::string> names;
+    for (const auto& row : rows) {
+      if (!row.always) names.push_back(row.channel.name);
+    }
+    throw Error(ErrorCode::usage, fmt::format("no channel is called \"{}\"; there are {}", name,
+                                              fmt::join(names, ", ")));
+  }
+  std::vector<formats::Channel> channels;
+  for (const auto& row : rows) {
+    const bool wanted =
+        std::find(optional.begin(), optional.end(), row.channel.name) != optional.end();
+    if (row.always || optional.empty() || wanted) channels.push_back(row.channel);
+  }
+  return channels;
+}
+
+Recorder::Recorder(std::size_t capacity)
+    : position_(capacity),
+      normal_(capacity),
+      direction_(capacity),
+      reflectance_(capacity),
+      throughput_(capacity),
+      contribution_(capacity),
+      unfiltered_(capacity),
+      distance_(capacity),
+      hit_distance_(capacity),
+      roughness_(capacity),
+      pixel_(capacity),
+      visibility_(capacity),
+      material_(capacity),
+      camera_(capacity),
+      flags_(capacity) {}
+
+void Recorder::set(std::size_t slot, std::uint16_t camera, std::uint32_t pixel,
+                   const PathRecord& record) {
+  position_[slot] = record.position;
+  normal_[slot] = record.normal;
+  direction_[slot] = record.direction;
+  reflectance_[slot] = record.reflectance;
+  throughput_[slot] = record.throughput;
+  contribution_[slot] = record.contribution;
+  unfiltered_[slot] = record.unfiltered;
+  distance_[slot] = record.distance;
+  hit_distance_[slot] = record.hit_distance;
+  roughness_[slot] = record.roughness;
+  pixel_[slot] = pixel;
+  visibility_[slot] = record.visibility;
+  material_[slot] = record.material;
+  camera_[slot] = camera;
+  flags_[slot] = static_cast<std::uint8_t>((record.has_vertex ? kHasVertexFlag : 0) |
+                                           (record.shaded ? kShadedFlag : 0));
+}
+
+std::vector<const void*> Recorder::columns(std::span<const formats::Channel> channels) const {
+  std::vector<const void*> result;
+  for (const formats::Channel& channel : channels) {
+    for (const auto& row : ColumnTable::rows()) {
+      if (row.channel.name == channel.name) result.push_back(row.data(*this));
+    }
+  }
+  return result;
+}
+
+void Recorder::load(const formats::Reader& reader, std::uint64_t first, std::size_t count) {
+  for (const auto& row : ColumnTable::rows()) {
+    if (!row.always) continue;
+    // The column is this object's own, which is not const here.
+    auto* column = static_cast<std::byte*>(const_cast<void*>(row.data(*this)));
+    reader.read(reader.require(row.channel.name, "the picture"), first, count,
+                {column, count * row.channel.stride()});
+  }
+}
+
+std::uint64_t Recorder::add_to(film::Film& film, std::size_t count,
+                               std::uint32_t shade_rate) const {
+  std::uint64_t left_out = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (shade_rate > 1 && (flags_[i] & kShadedFlag) == 0) continue;
+    Rgb radiance = unfiltered_[i];
+    if ((flags_[i] & kHasVertexFlag) != 0) radiance += throughput_[i] * contribution_[i];
+    if (is_finite(radiance)) {
+      film.add(pixel_[i], radiance);
+    } else {
+      ++left_out;
+    }
+  }
+  return left_out;
+}
+
+}  // namespace psf::render

@@ -1,0 +1,57 @@
+// Keeps the records of one slab of paths as columns of the path-vertex buffer.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "film/film.h"
+#include "formats/layout/head.h"
+#include "formats/read/reader.h"
+#include "render/light/integrator.h"
+
+namespace psf::render {
+
+constexpr std::uint8_t kHasVertexFlag = 1;  // bits of the channel `flags`
+constexpr std::uint8_t kShadedFlag = 2;
+
+// The channels to write, in the format's order: those that the format requires; `flags` and
+// `unfiltered`, without which pictures cannot be made; and of the others those in `optional`, or
+// all where it is empty. Throws Error{usage} that names an unknown channel and the known ones.
+[[nodiscard]] std::vector<formats::Channel> record_channels(
+    std::span<const std::string> optional = {});
+
+class Recorder {
+ public:
+  explicit Recorder(std::size_t capacity);
+
+  // Sets record `slot` < capacity. Different slots may be set from different threads at once.
+  void set(std::size_t slot, std::uint16_t camera, std::uint32_t pixel, const PathRecord& record);
+
+  // The address of the first value of each channel, for formats::Writer::append(). `channels` are
+  // from record_channels(). Valid as long as the recorder exists.
+  [[nodiscard]] std::vector<const void*> columns(std::span<const formats::Channel> channels) const;
+
+  // Sets the first `count` slots to the records from `first` on of a dump with record_channels(),
+  // but only the channels that add_to() needs. Throws what the reader throws.
+  void load(const formats::Reader& reader, std::uint64_t first, std::size_t count);
+
+  // Adds u + alpha c of the first `count` records to `film`, in order. With `shade_rate` > 1 only
+  // records with the flag for shaded paths are added, with or without a vertex, so that paths that
+  // meet no surface do not weigh more than others. Values that are not finite are left out; returns
+  // their number.
+  std::uint64_t add_to(film::Film& film, std::size_t count, std::uint32_t shade_rate) const;
+
+ private:
+  friend struct ColumnTable;
+  std::vector<Vec3> position_, normal_, direction_;
+  std::vector<Rgb> reflectance_, throughput_, contribution_, unfiltered_;
+  std::vector<float> distance_, hit_distance_, roughness_;
+  std::vector<std::uint32_t> pixel_, visibility_, material_;
+  std::vector<std::uint16_t> camera_;
+  std::vector<std::uint8_t> flags_;
+};
+
+}  // namespace psf::render

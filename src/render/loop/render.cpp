@@ -1,0 +1,258 @@
+// The loop itself: tracing in slabs, output one slab behind.
+#include "render/loop/render.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <future>
+#include <memory>
+
+#include "core/interrupt.h"
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "core/seconds.h"
+#include "formats/read/reader.h"
+#include "render/camera/camera.h"
+#include "render/loop/recorder.h"
+#include "render/loop/resume.h"
+#include "render/loop/shade_rate.h"
+
+namespace psf::render {
+namespace {
+
+constexpr std::size_t kSlab = std::size_t{1} << 18;  // records traced before they are written
+constexpr std::size_t kGrain = 1024;                 // paths a task
+
+using core::Clock;
+using core::seconds_since;
+
+// A camera's place among the paths of a pass.
+struct View {
+  CameraRays rays;
+  std::uint32_t width, height;
+  std::uint64_t first;  // path of the pass
+  [[nodiscard]] std::size_t pixels() const { return std::size_t{width} * height; }
+};
+
+class Loop {
+ public:
+  Loop(const Scene& scene, const Integrator& integrator, const RenderSettings& settings,
+       formats::Writer* writer)
+      : integrator_(integrator),
+        space_(scene.space),
+        settings_(settings),
+        writer_(writer),
+        shade_rate_(settings.shade_rate),
+        channels_(record_channels(settings.channels)) {
+    result_.films.reserve(settings.cameras.size());
+    std::size_t largest = 0;
+    for (const std::size_t index : settings.cameras) {
+      const Camera& camera = scene.cameras[index];
+      views_.push_back({CameraRays(camera), camera.width, camera.height, paths_a_pass_});
+      paths_a_pass_ += views_.back().pixels();
+      largest = std::max(largest, views_.back().pixels());
+      result_.films.emplace_back(camera.width, camera.height);
+    }
+    for (auto& slab : slabs_) slab = std::make_unique<Recorder>(std::min(kSlab, largest));
+  }
+
+  // Takes up what a resumed file holds.
+  void resume(const formats::Head& head);
+  RenderResult run();
+
+ private:
+  void replay();
+  void trace_pass(std::uint64_t pass);
+  void trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t first, std::size_t count);
+  void trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path, Recorder& recorder,
+                  std::size_t slot, std::uint64_t& rays) const;
+  void emit(std::uint64_t pass, std::uint16_t camera, std::size_t count);
+  void wait_for_output();
+  [[nodiscard]] Done done_now() const;
+
+  const Integrator& integrator_;
+  Space space_;
+  const RenderSettings& settings_;
+  formats::Writer* writer_;
+  ShadeRate shade_rate_;
+  std::vector<formats::Channel> channels_;
+  std::vector<View> views_;
+  std::uint64_t paths_a_pass_ = 0;
+  std::uint64_t paths_done_ = 0;
+  std::atomic<std::uint64_t> rays_{0};
+  double seconds_before_ = 0;  // time of the runs before this one
+  Clock::time_point start_ = Clock::now();
+  core::Progress* progress_ = nullptr;
+  RenderResult result_;
+  // Two slabs in turn: one is traced while the other is written. The future comes last, so that it
+  // is waited for before anything it uses goes.
+  std::array<std::unique_ptr<Recorder>, 2> slabs_;
+  std::size_t current_ = 0;
+  std::future<void> output_;
+};
+
+void Loop::resume(const formats::Head& head) {
+  const Done done = resume_point(*writer_, head, settings_, paths_a_pass_);
+  if (settings_.replay) replay();
+  result_.passes = done.passes;
+  result_.non_finite = done.non_finite;
+  paths_done_ = done.passes * paths_a_pass_;
+  rays_ = done.rays;
+  seconds_before_ = done.seconds;
+  start_ = Clock::now();
+}
+
+// Adds what is committed to the films as if it had just been traced.
+void Loop::replay() {
+  const formats::Reader reader(writer_->path());
+  core::Progress progress("read back", settings_.quiet);
+  Recorder& recorder = *slabs_[0];
+  std::uint64_t path = 0;
+  while (path < reader.records()) {
+    for (std::size_t camera = 0; camera < views_.size(); ++camera) {
+      const std::size_t pixels = views_[camera].pixels();
+      for (std::size_t first = 0; first < pixels; first += kSlab) {
+        const std::size_t count = std::min(kSlab, pixels - first);
+        core::throw_if_interrupted("nothing was added to the file");
+        recorder.load(reader, path, count);
+        (void)recorder.add_to(result_.films[camera], count, settings_.shade_rate);
+        path += count;
+        progress.advance(path, reader.records());
+      }
+    }
+  }
+  progress.finish();
+}
+
+RenderResult Loop::run() {
+  core::Progress progress("render", settings_.quiet);
+  progress_ = &progress;
+  while (result_.passes < settings_.passes) {
+    trace_pass(result_.passes);
+    ++result_.passes;
+    if (core::interrupted() || seconds_since(start_) >= settings_.time_limit) break;
+  }
+  wait_for_output();
+  progress.finish();
+  result_.interrupted = core::interrupted() && result_.passes < settings_.passes;
+  if (writer_ != nullptr && !result_.interrupted) writer_->close();
+  result_.paths = paths_done_;
+  result_.rays = rays_;
+  result_.seconds = seconds_before_ + seconds_since(start_);
+  return std::move(result_);
+}
+
+void Loop::trace_pass(std::uint64_t pass) {
+  for (std::size_t camera = 0; camera < views_.size(); ++camera) {
+    const std::size_t pixels = views_[camera].pixels();
+    for (std::size_t first = 0; first < pixels; first += kSlab) {
+      const std::size_t count = std::min(kSlab, pixels - first);
+      trace_slab(pass, static_cast<std::uint16_t>(camera), first, count);
+      emit(pass, static_cast<std::uint16_t>(camera), count);
+    }
+  }
+}
+
+void Loop::trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t first,
+                      std::size_t count) {
+  // In steps that keep every thread busy for a while, so that progress moves within a slab.
+  const std::size_t step = std::max<std::size_t>(64, 32 * core::thread_count()) * kGrain;
+  Recorder& recorder = *slabs_[current_];
+  for (std::size_t begin = 0; begin < count; begin += step) {
+    const std::size_t size = std::min(step, count - begin);
+    core::parallel_for(size, kGrain, [&](std::size_t from, std::size_t to) {
+      std::uint64_t rays = 0;
+      for (std::size_t i = begin + from; i < begin + to; ++i) {
+        trace_path(pass, camera, first + i, recorder, i, rays);
+      }
+      rays_ += rays;
+    });
+    paths_done_ += size;
+    const double rate =
+        static_cast<double>(rays_) / std::max(1e-9, seconds_before_ + seconds_since(start_));
+    progress_->advance(paths_done_, settings_.passes * paths_a_pass_,
+                       fmt::format("{:.2f} M rays/s{}", rate / 1e6,
+                                   core::interrupted() ? ", ending after this pass" : ""));
+  }
+}
+
+void Loop::trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path,
+                      Recorder& recorder, std::size_t slot, std::uint64_t& rays) const {
+  const View& view = views_[camera];
+  const bool global = settings_.sampler.enumeration == Enumeration::global;
+  const std::uint64_t in_pass = view.first + path;
+  Sampler sampler(settings_.sampler, global ? 0 : static_cast<std::uint32_t>(in_pass),
+                  global ? pass * paths_a_pass_ + in_pass : pass);
+  const Vec2 u = sampler.next_2d();
+  std::uint32_t x = static_cast<std::uint32_t>(path % view.width);
+  std::uint32_t y = static_cast<std::uint32_t>(path / view.width);
+  Vec2 position(static_cast<float>(x) + u.x, static_cast<float>(y) + u.y);
+  if (global) {
+    // In double, where the products are exact: rounding must not move a point across pixels.
+    const double plane_x = double{u.x} * view.width;
+    const double plane_y = double{u.y} * view.height;
+    x = static_cast<std::uint32_t>(plane_x);
+    y = static_cast<std::uint32_t>(plane_y);
+    position = Vec2(static_cast<float>(plane_x), static_cast<float>(plane_y));
+  }
+  const Vec2 lens = view.rays.has_lens() ? sampler.next_2d() : Vec2(0, 0);
+  const bool shade = shade_rate_.shaded(x, y, pass);
+  PathRecord record = integrator_.trace(view.rays.ray(position, lens), sampler, shade, rays);
+  // Without a vertex it is not shaded either way; the flag says that it counts.
+  if (!record.has_vertex && settings_.shade_rate > 1) record.shaded = shade;
+  recorder.set(slot, camera, y * view.width + x, in_world(record, space_));
+}
+
+void Loop::emit(std::uint64_t pass, std::uint16_t camera, std::size_t count) {
+  wait_for_output();
+  Recorder& recorder = *slabs_[current_];
+  current_ ^= 1;
+  const bool ends_pass = paths_done_ == (pass + 1) * paths_a_pass_;
+  auto work = [this, &recorder, camera, count, ends_pass, done = done_now()]() mutable {
+    result_.non_finite += recorder.add_to(result_.films[camera], count, settings_.shade_rate);
+    if (writer_ == nullptr) return;
+    writer_->append(count, recorder.columns(channels_));
+    if (!ends_pass) return;
+    done.non_finite = result_.non_finite;
+    const std::string state = resume_state(done, settings_);
+    writer_->commit(std::as_bytes(std::span(state)));
+  };
+  if (core::thread_count() > 1) {
+    output_ = std::async(std::launch::async, std::move(work));
+  } else {
+    const auto start = Clock::now();
+    work();
+    result_.output_seconds += seconds_since(start);
+  }
+}
+
+void Loop::wait_for_output() {
+  if (!output_.valid()) return;
+  const auto start = Clock::now();
+  output_.get();
+  result_.output_seconds += seconds_since(start);
+}
+
+// The state after the paths traced so far; the caller sets the number of non-finite paths.
+Done Loop::done_now() const {
+  return {paths_done_ / paths_a_pass_, rays_, 0, seconds_before_ + seconds_since(start_)};
+}
+
+}  // namespace
+
+RenderResult render(const Scene& scene, const Integrator& integrator,
+                    const RenderSettings& settings, formats::Writer* writer) {
+  settings.validate(scene);
+  RenderSettings complete = settings;
+  complete.cameras = chosen_cameras(scene, settings);
+  Loop loop(scene, integrator, complete, writer);
+  if (writer != nullptr && writer->passes() > 0) {
+    loop.resume(make_head(scene, integrator, settings));
+  }
+  return loop.run();
+}
+
+}  // namespace psf::render

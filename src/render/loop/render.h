@@ -1,0 +1,70 @@
+// The render loop over passes, cameras and paths: it traces the paths, writes their records and
+// sums up the pictures.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "film/film.h"
+#include "formats/layout/head.h"
+#include "formats/write/writer.h"
+#include "render/light/integrator.h"
+#include "render/sample/sampler.h"
+#include "render/scene/scene.h"
+
+namespace psf::render {
+
+struct RenderSettings {
+  IntegratorSettings integrator;  // for metadata alone; render() gets the integrator itself
+  SamplerSettings sampler;
+  std::uint64_t passes = 16;          // a pass has width * height paths for each camera
+  std::vector<std::size_t> cameras;   // indices into Scene::cameras; empty: all
+  std::uint32_t shade_rate = 1;       // K, 1 to 65536: one path in K is shaded
+  std::vector<std::string> channels;  // optional channels to write; empty: all
+  double time_limit = std::numeric_limits<double>::infinity();  // seconds; the pass is finished
+  bool replay = true;  // on resume, read the passes of the file back into the films
+  std::string producer = "psf-render";
+  bool quiet = false;
+
+  // Throws Error{usage} for what is out of range, Error{limit} for more paths than can be numbered.
+  void validate(const Scene& scene) const;
+};
+
+struct RenderResult {
+  std::vector<film::Film> films;  // the unfiltered picture of each chosen camera
+  // Where a file was resumed, these include the earlier runs. All passes are committed.
+  std::uint64_t passes = 0, paths = 0, rays = 0;
+  std::uint64_t non_finite = 0;  // paths left out of the pictures
+  double seconds = 0;            // time of the loop
+  double output_seconds = 0;     // part of it spent waiting for compression and writing
+  bool interrupted = false;      // ^C ended it before the last pass
+};
+
+// The cameras that are rendered: settings.cameras, or all of the scene's.
+[[nodiscard]] std::vector<std::size_t> chosen_cameras(const Scene& scene,
+                                                      const RenderSettings& settings);
+
+// The head of the file to write: channels and metadata.
+[[nodiscard]] formats::Head make_head(const Scene& scene, const Integrator& integrator,
+                                      const RenderSettings& settings);
+
+// Renders. Paths are numbered pass by pass, within a pass camera by camera, and within a camera by
+// the enumeration:
+//   pixel   path i belongs to pixel i in scanline order; its sample is point `pass` of the pixel's
+//           own sequence.
+//   global  the path's number in the whole file is its index in one sequence, whose first two
+//           dimensions are the image plane.
+// `writer`, opened with make_head(), may be null. It gets every record in path order, with one
+// commit per pass, and is closed unless ^C ended the loop. Where it resumes a file, the loop goes
+// on behind the file's last pass, with the same records and pictures as without the interruption;
+// it then throws what resume_point() throws. Compression, writing and summing up overlap the
+// tracing of the next slab. The output is the same for any number of threads.
+[[nodiscard]] RenderResult render(const Scene& scene, const Integrator& integrator,
+                                  const RenderSettings& settings, formats::Writer* writer);
+
+[[nodiscard]] std::string to_string(SamplerKind kind);
+[[nodiscard]] std::string to_string(Enumeration enumeration);
+
+}  // namespace psf::render

@@ -1,0 +1,98 @@
+// Settings of a render: their limits, and what the file says of them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/error.h"
+#include "formats/layout/layout.h"
+#include "formats/layout/metadata.h"
+#include "render/camera/camera.h"
+#include "render/loop/recorder.h"
+#include "render/loop/render.h"
+
+namespace psf::render {
+
+void RenderSettings::validate(const Scene& scene) const {
+  if (passes == 0) throw Error(ErrorCode::usage, "passes: at least 1 is needed");
+  if (shade_rate == 0 || shade_rate > 65536) {
+    throw Error(ErrorCode::usage, "shade rate: 1 to 1/65536 is possible");
+  }
+  if (scene.cameras.empty()) {
+    throw Error(ErrorCode::bad_input, scene.name + ": there is no camera, give one");
+  }
+  double pixels = 0;
+  const auto chosen = chosen_cameras(scene, *this);
+  for (const std::size_t k : chosen) {
+    pixels += static_cast<double>(scene.cameras[k].width) * scene.cameras[k].height;
+  }
+  const double paths = pixels * static_cast<double>(passes);
+  if (chosen.size() > 65535 || pixels >= 0x1p32 || paths >= 0x1p40 ||
+      paths * integrator.split >= 0x1p48) {
+    throw Error(ErrorCode::limit,
+                "more than 65535 cameras, 2^32 paths a pass, 2^40 paths or 2^48 continuations; "
+                "lower the size, the passes or the split");
+  }
+}
+
+std::vector<std::size_t> chosen_cameras(const Scene& scene, const RenderSettings& settings) {
+  if (!settings.cameras.empty()) return settings.cameras;
+  std::vector<std::size_t> all(scene.cameras.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+formats::Head make_head(const Scene& scene, const Integrator& integrator,
+                        const RenderSettings& settings) {
+  formats::Metadata metadata;
+  metadata.producer = settings.producer;
+  metadata.scene = scene.name;
+  metadata.scene_hash = scene.hash;
+  metadata.integrator = settings.integrator.name;
+  metadata.sampler = to_string(settings.sampler.kind);
+  metadata.enumeration = to_string(settings.sampler.enumeration);
+  metadata.seed = settings.sampler.seed;
+  metadata.block_base = block_base(settings.sampler.kind);
+  metadata.split = settings.integrator.split;
+  metadata.shade_rate = settings.shade_rate;
+  metadata.vertex_roughness = double{settings.integrator.vertex_roughness};
+  metadata.vertex_rule = fmt::format(
+      "the first vertex of the camera path with a perceptual roughness of at least {} (diffuse: "
+      "1); "
+      "paths that meet none have no vertex",
+      settings.integrator.vertex_roughness);
+  metadata.units = "scene";
+  for (const std::size_t k : chosen_cameras(scene, settings)) {
+    metadata.cameras.push_back(CameraRays(scene.cameras[k]).info(scene.space));
+  }
+  metadata.lights = integrator.light_names();
+  for (const Material& material : scene.materials) metadata.materials.push_back(material.name);
+
+  formats::Head head;
+  head.channels = record_channels(settings.channels);
+  head.metadata = formats::to_json(metadata);
+  // Names are a help and no reason to refuse a scene of very many materials.
+  while (head.metadata.size() > formats::kMaxMetadata && !metadata.materials.empty()) {
+    metadata.materials.resize(metadata.materials.size() / 2);
+    head.metadata = formats::to_json(metadata);
+  }
+  return head;
+}
+
+std::string to_string(SamplerKind kind) {
+  switch (kind) {
+    case SamplerKind::sobol:
+      return "sobol";
+    case SamplerKind::halton:
+      return "halton";
+    case SamplerKind::independent:
+      return "independent";
+  }
+  return "?";
+}
+
+std::string to_string(Enumeration enumeration) {
+  return enumeration == Enumeration::global ? "global" : "pixel";
+}
+
+}  // namespace psf::render

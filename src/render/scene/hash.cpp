@@ -1,0 +1,134 @@
+// The hash over all of a scene that shapes the picture.
+#include <OpenImageIO/hash.h>
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "render/scene/load_parts.h"
+
+namespace psf::render {
+namespace {
+
+// Collects 64-bit numbers: small values as they are, arrays as their fingerprint (FarmHash, whose
+// fingerprints are the same on all machines and in all its versions).
+class Digest {
+ public:
+  void add(std::uint64_t value) { words_.push_back(value); }
+  void add(float value) { add(std::uint64_t{std::bit_cast<std::uint32_t>(value)}); }
+  void add(int value) { add(static_cast<std::uint64_t>(value)); }
+  void add(const Vec3& v) {
+    add(v.x);
+    add(v.y);
+    add(v.z);
+  }
+  void add(const Rgb& c) { add(Vec3(c.x, c.y, c.z)); }
+  template <typename T>
+  void add_array(const std::vector<T>& values) {
+    add(std::uint64_t{values.size()});
+    if (values.empty()) return;
+    add(std::uint64_t{OIIO::farmhash::Fingerprint64(
+        static_cast<const char*>(static_cast<const void*>(values.data())),
+        values.size() * sizeof(T))});
+  }
+  [[nodiscard]] std::string text() const {
+    const auto hash = OIIO::farmhash::Fingerprint128(
+        static_cast<const char*>(static_cast<const void*>(words_.data())),
+        words_.size() * sizeof(std::uint64_t));
+    return fmt::format("{:016x}{:016x}", OIIO::farmhash::Uint128High64(hash),
+                       OIIO::farmhash::Uint128Low64(hash));
+  }
+
+ private:
+  std::vector<std::uint64_t> words_;
+};
+
+void add(Digest& digest, const Texture& texture) {
+  digest.add(std::uint64_t{texture.width()});
+  digest.add(std::uint64_t{texture.height()});
+  std::vector<Rgb> row(texture.width());
+  for (std::size_t y = 0; y < texture.height(); ++y) {
+    for (std::size_t x = 0; x < texture.width(); ++x) row[x] = texture.texel(x, y);
+    digest.add_array(row);
+  }
+}
+
+void add(Digest& digest, const Material& m) {
+  digest.add(static_cast<int>(m.kind));
+  digest.add(m.reflectance);
+  digest.add(m.reflectance_texture);
+  if (m.kind == MaterialKind::gloss) digest.add(m.specular);
+  digest.add(m.roughness);
+  digest.add(m.metalness);
+  digest.add(m.roughness_metalness_texture);
+  digest.add(m.ior);
+  digest.add(int{m.two_sided});
+  digest.add(int{m.emits_two_sided});
+  digest.add(m.emission);
+  digest.add(m.emission_texture);
+}
+
+void add(Digest& digest, const Mesh& mesh) {
+  digest.add_array(mesh.positions);
+  digest.add_array(mesh.normals);
+  digest.add_array(mesh.uvs);
+  digest.add_array(mesh.triangles);
+  digest.add(mesh.material);
+}
+
+void add(Digest& digest, const Sphere& sphere) {
+  digest.add(sphere.center);
+  digest.add(sphere.radius);
+  digest.add(sphere.material);
+}
+
+void add(Digest& digest, const Light& light) {
+  digest.add(static_cast<int>(light.kind));
+  digest.add(light.position);
+  digest.add(light.direction);
+  digest.add(light.intensity);
+  digest.add(light.cos_inner);
+  digest.add(light.cos_outer);
+  digest.add(light.angle);
+}
+
+void add(Digest& digest, const Camera& camera) {
+  digest.add(camera.eye);
+  digest.add(camera.target);
+  digest.add(camera.up);
+  digest.add(camera.fov);
+  digest.add(std::uint64_t{camera.width});
+  digest.add(std::uint64_t{camera.height});
+  digest.add(camera.lens_radius);
+  digest.add(camera.focus_distance);
+}
+
+template <typename T>
+void add_all(Digest& digest, const std::vector<T>& items) {
+  digest.add(std::uint64_t{items.size()});
+  for (const T& item : items) add(digest, item);
+}
+
+}  // namespace
+
+std::string hash_of(const Scene& scene) {
+  Digest digest;
+  add_all(digest, scene.textures);
+  add_all(digest, scene.materials);
+  add_all(digest, scene.meshes);
+  add_all(digest, scene.spheres);
+  add_all(digest, scene.lights);
+  digest.add(scene.environment.radiance);
+  digest.add(scene.environment.texture);
+  digest.add(scene.environment.rotation);
+  add_all(digest, scene.cameras);
+  if (!scene.space.is_world()) {
+    for (int axis = 0; axis < 3; ++axis)
+      digest.add(std::bit_cast<std::uint64_t>(scene.space.origin[axis]));
+    digest.add(scene.space.exponent);
+  }
+  return digest.text();
+}
+
+}  // namespace psf::render

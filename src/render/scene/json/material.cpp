@@ -1,0 +1,64 @@
+// Materials of the JSON scene file, and the names by which shapes find them.
+#include <algorithm>
+
+#include "render/scene/json/parts.h"
+
+namespace psf::render {
+
+void read_material(const JsonCursor& json, JsonLoad& load) {
+  // In the order of MaterialKind.
+  static constexpr std::string_view kKinds[] = {"diffuse", "mirror", "glass", "conductor", "coat"};
+  json.check_keys({"name", "kind", "reflectance", "reflectance_map", "roughness", "metalness",
+                   "roughness_metalness_map", "ior", "two_sided", "emission", "emission_map",
+                   "emits_two_sided"});
+  Material material;
+  const JsonCursor name = json.at("name");
+  material.name = name.text();
+  for (const Material& other : load.scene.materials) {
+    if (other.name == material.name)
+      name.fail("another material is called \"" + material.name + "\"");
+  }
+  if (const auto kind = json.find("kind"))
+    material.kind = static_cast<MaterialKind>(kind->choice(kKinds));
+  // Mirrors and glass lose nothing, and a picture is shown as it is, where nothing else is said.
+  const bool lossless =
+      material.kind == MaterialKind::mirror || material.kind == MaterialKind::glass;
+  if (lossless || json.find("reflectance_map")) material.reflectance = Rgb(1);
+  if (const auto c = json.find("reflectance")) material.reflectance = c->rgb(kUnitRange);
+  if (const auto r = json.find("roughness")) material.roughness = r->number(kUnitRange);
+  if (const auto m = json.find("metalness")) material.metalness = m->number(kUnitRange);
+  if (const auto i = json.find("ior")) material.ior = i->number({1, 10, "in [1, 10]"});
+  if (const auto t = json.find("two_sided")) material.two_sided = t->boolean();
+  if (const auto t = json.find("emits_two_sided")) material.emits_two_sided = t->boolean();
+  if (json.find("emission_map")) material.emission = Rgb(1);
+  if (const auto e = json.find("emission")) material.emission = e->rgb(kNonNegative);
+
+  const auto texture = [&](std::string_view key, TextureUse use) {
+    const auto file = json.find(key);
+    if (!file) return kNone;
+    return load.textures.load(file->file(), file->text(), use, [&] {
+      return file->where() + ": material \"" + material.name + "\"";
+    });
+  };
+  material.reflectance_texture = texture("reflectance_map", TextureUse::reflectance);
+  material.emission_texture = texture("emission_map", TextureUse::radiance);
+  material.roughness_metalness_texture = texture("roughness_metalness_map", TextureUse::numbers);
+  load.scene.materials.push_back(std::move(material));
+}
+
+int read_material_name(const JsonCursor& json, const Scene& scene, bool required) {
+  const auto found = json.find("material");
+  if (!found && !required) return kNone;
+  const JsonCursor cursor = json.at("material");
+  const std::string name = cursor.text();
+  const auto material = std::find_if(scene.materials.begin(), scene.materials.end(),
+                                     [&](const Material& m) { return m.name == name; });
+  if (material == scene.materials.end()) {
+    std::vector<std::string_view> known;
+    for (const Material& m : scene.materials) known.push_back(m.name);
+    cursor.fail("no material is called \"" + name + "\"" + suggestion(name, known));
+  }
+  return static_cast<int>(material - scene.materials.begin());
+}
+
+}  // namespace psf::render

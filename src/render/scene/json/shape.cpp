@@ -1,0 +1,314 @@
+// Shapes of the JSON scene file, expanded into the meshes and spheres of the scene.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "core/error.h"
+#include "render/scene/json/parts.h"
+#include "render/scene/shapes.h"
+
+namespace psf::render {
+namespace {
+
+constexpr int kMaxGroupDepth = 32;  // deepest nesting of groups
+constexpr std::uint32_t kMaxSegments = 65536;
+
+// What is taken off the coordinates of a shape, and added by its placement: its first point, so
+// that the shape has all digits of its numbers even far from the origin.
+class Base {
+ public:
+  // `point`: of the shape; null for none.
+  Base(const JsonLoad& load, const std::optional<JsonCursor>& point) {
+    if (load.scene.space.exact && point) base_ = point->vec3d();
+  }
+  [[nodiscard]] Vec3 point(const JsonCursor& json) const { return Vec3(json.vec3d() - base_); }
+  [[nodiscard]] const Imath::V3d& place() const { return base_; }
+
+ private:
+  Imath::V3d base_{0, 0, 0};
+};
+
+Mesh read_inline_mesh(const JsonCursor& json, const Base& base) {
+  Mesh mesh;
+  for (const JsonCursor& p : json.items("positions")) mesh.positions.push_back(base.point(p));
+  for (const JsonCursor& n : json.items("normals")) mesh.normals.push_back(n.vec3());
+  for (const JsonCursor& uv : json.items("uvs")) mesh.uvs.push_back(uv.vec2());
+  if (mesh.positions.empty()) json.fail("\"positions\" is missing or empty");
+  const auto match = [&](std::string_view key, std::size_t count) {
+    if (count != 0 && count != mesh.positions.size()) {
+      json.at(key).fail(fmt::format("there are {} for {} positions", count, mesh.positions.size()));
+    }
+  };
+  match("normals", mesh.normals.size());
+  match("uvs", mesh.uvs.size());
+  const auto last = static_cast<std::uint32_t>(mesh.positions.size() - 1);
+  for (const JsonCursor& triangle : json.at("triangles").items()) {
+    const auto corners = triangle.items();
+    if (corners.size() != 3) triangle.expected("an array of 3 indices");
+    mesh.triangles.push_back(
+        {corners[0].integer(0, last), corners[1].integer(0, last), corners[2].integer(0, last)});
+  }
+  return mesh;
+}
+
+std::uint32_t read_segments(const JsonCursor& json, std::uint32_t otherwise) {
+  const auto segments = json.find("segments");
+  return segments ? segments->integer(3, kMaxSegments) : otherwise;
+}
+
+Mesh read_lathe(const JsonCursor& json) {
+  std::vector<Vec2> profile;
+  const JsonCursor points = json.at("profile");
+  for (const JsonCursor& point : points.items()) {
+    profile.push_back(point.vec2());
+    if (profile.back().x < 0) point.expected("a radius >= 0 and a height");
+  }
+  if (profile.size() < 2) points.expected("at least two points");
+  return make_lathe(profile, read_segments(json, 32));
+}
+
+Mesh read_cylinder(const JsonCursor& json, const Base& base) {
+  const Vec3 from = base.point(json.at("from")), to = base.point(json.at("to"));
+  const float radius = json.at("radius").number(kPositive);
+  const auto to_radius = json.find("to_radius");
+  const auto caps = json.find("caps");
+  if (!((to - from).length() > 0)) json.fail("\"from\" and \"to\" are the same point");
+  return make_cylinder(from, to, radius, to_radius ? to_radius->number(kNonNegative) : radius,
+                       read_segments(json, 32), caps ? caps->boolean() : true);
+}
+
+Mesh read_box(const JsonCursor& json, const Base& base) {
+  const Vec3 min = base.point(json.at("min")), max = base.point(json.at("max"));
+  if (!(min.x < max.x && min.y < max.y && min.z < max.z)) {
+    json.fail("\"min\" is not below \"max\" in each of x, y and z");
+  }
+  return make_box(min, max);
+}
+
+Mesh read_arch(const JsonCursor& json) {
+  Arch arch;
+  arch.width = json.at("width").number(kPositive);
+  arch.height = json.at("height").number(kPositive);
+  arch.depth = json.at("depth").number(kPositive);
+  const JsonCursor span = json.at("span");
+  arch.span = span.number(kPositive);
+  if (arch.span > arch.width) span.fail("the opening is wider than the panel");
+  const auto rise = json.find("rise");
+  arch.rise = rise ? rise->number(kPositive) : arch.span / 2;
+  if (!(arch.rise < arch.height))
+    (rise ? *rise : span).fail("the opening is higher than the panel");
+  arch.segments = read_segments(json, arch.segments);
+  return make_arch(arch);
+}
+
+// Adds the copies of `mesh` as one mesh.
+void add_mesh(const JsonCursor& json, const Mesh& mesh, const std::vector<Placement>& placements,
+              JsonLoad& load) {
+  load.copies.add(json, mesh.triangles.size(), mesh.positions.size(), placements.size());
+  Mesh all;
+  all.name = mesh.name;
+  all.material = mesh.material;
+  all.positions.reserve(mesh.positions.size() * placements.size());
+  all.triangles.reserve(mesh.triangles.size() * placements.size());
+  for (const Placement& placement : placements) {
+    Mesh copy = mesh;
+    try {
+      if (load.scene.space.exact) {
+        transform(copy, placement);
+      } else {
+        transform(copy, Mat4(placement));
+      }
+    } catch (const Error& error) {
+      json.fail(error.what());
+    }
+    append(all, copy);
+  }
+  load.scene.meshes.push_back(std::move(all));
+}
+
+// In float or double, see Placement.
+template <class T>
+void add_sphere(const JsonCursor& json, const Sphere& sphere, const Imath::Vec3<T>& center,
+                const std::vector<Placement>& placements, JsonLoad& load) {
+  load.copies.add(json, 1, 0, placements.size());
+  for (const Placement& placement : placements) {
+    const Imath::Matrix44<T> m(placement);
+    // The rows of the linear part: the images of the axes.
+    const Imath::Vec3<T> x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]),
+        z(m[2][0], m[2][1], m[2][2]);
+    const T scale = x.length();
+    const T slack = static_cast<T>(1e-4f) * scale;
+    const bool even = std::abs(y.length() - scale) <= slack &&
+                      std::abs(z.length() - scale) <= slack &&
+                      std::abs(x.dot(y)) <= slack * scale && std::abs(x.dot(z)) <= slack * scale &&
+                      std::abs(y.dot(z)) <= slack * scale;
+    if (!even)
+      json.fail(
+          "a sphere can be moved, turned and scaled evenly only; use a lathe for an ellipsoid");
+    Sphere copy = sphere;
+    copy.center = Vec3(center * m);
+    copy.radius = static_cast<float>(static_cast<T>(sphere.radius) * scale);
+    load.scene.spheres.push_back(std::move(copy));
+  }
+}
+
+// The surfaces of a mesh file with its materials, or with `material` for all; its lights and
+// cameras stay out.
+void add_mesh_file(const JsonCursor& json, int material, bool flipped,
+                   const std::vector<Placement>& placements, JsonLoad& load) {
+  const JsonCursor file = json.at("file");
+  Scene& scene = load.scene;
+  Scene part;
+  try {
+    const std::string path = find_file(file.file(), file.text());
+    scene.files.push_back(path);
+    if (scene.space.exact) {
+      part = load_fitting(path, [&](Scene& empty) { load_mesh_file(path, empty); });
+    } else {
+      load_mesh_file(path, part);
+      if (fitting_space(part).exact) scene.wanted.exact = true;
+    }
+  } catch (const Error& error) {
+    throw Error(error.code(), file.where() + ": " + error.what());
+  }
+  std::vector<Placement> of_part = placements;
+  if (scene.space.exact) {
+    for (Placement& placement : of_part) placement = part.space.to_world() * placement;
+  }
+  const int first_material = static_cast<int>(scene.materials.size());
+  if (material == kNone) {
+    const int first_texture = static_cast<int>(scene.textures.size());
+    for (Texture& texture : part.textures) scene.textures.push_back(std::move(texture));
+    for (Material m : part.materials) {
+      for (int* texture :
+           {&m.reflectance_texture, &m.emission_texture, &m.roughness_metalness_texture}) {
+        if (*texture != kNone) *texture += first_texture;
+      }
+      scene.materials.push_back(std::move(m));
+    }
+  }
+  for (Mesh& mesh : part.meshes) {
+    mesh.material = material == kNone ? mesh.material + first_material : material;
+    if (flipped) flip(mesh);
+    add_mesh(json, mesh, of_part, load);
+  }
+  scene.files.insert(scene.files.end(), part.files.begin(), part.files.end());
+  for (std::string& warning : part.warnings) scene.warnings.push_back(std::move(warning));
+}
+
+constexpr std::string_view kShapes[] = {"group", "sphere", "quad", "box",
+                                        "arch",  "lathe",  "mesh", "cylinder"};
+enum ShapeKind : std::size_t { group, sphere, quad, box, arch, lathe, mesh_shape, cylinder };
+
+void check_shape_keys(const JsonCursor& json, std::size_t kind, bool from_file) {
+  static const std::vector<std::string_view> kKeys[] = {
+      {"shapes"},
+      {"center", "radius"},
+      {"origin", "u", "v"},
+      {"min", "max"},
+      {"width", "height", "depth", "span", "rise", "segments"},
+      {"profile", "segments"},
+      {"file", "positions", "triangles", "normals", "uvs"},
+      {"from", "to", "radius", "to_radius", "segments", "caps"}};
+  std::vector<std::string_view> known = {"shape", "name", "transform", "repeat"};
+  if (kind != group) known.push_back("material");
+  if (kind != group && kind != sphere) known.insert(known.end(), {"flip", "uv_scale"});
+  known.insert(known.end(), kKeys[kind].begin(), kKeys[kind].end());
+  if (from_file) known = {"shape", "name", "transform", "repeat", "material", "flip", "file"};
+  json.check_keys(known);
+}
+
+std::vector<Placement> combine(const JsonCursor& json, const std::vector<Placement>& inner,
+                               const std::vector<Placement>& outer, bool exact) {
+  if (inner.size() > kMaxCopies / outer.size()) {
+    throw Error(ErrorCode::limit, fmt::format("{}: more than {} copies", json.where(), kMaxCopies));
+  }
+  std::vector<Placement> all;
+  all.reserve(inner.size() * outer.size());
+  for (const Placement& o : outer) {
+    for (const Placement& i : inner) all.push_back(product(i, o, exact));
+  }
+  return all;
+}
+
+// A point of a shape that has points.
+std::optional<JsonCursor> point_of(const JsonCursor& json, std::size_t kind) {
+  switch (kind) {
+    case quad:
+      return json.find("origin");
+    case box:
+      return json.find("min");
+    case cylinder:
+      return json.find("from");
+    case mesh_shape: {
+      const auto points = json.find("positions");
+      return points && points->size() > 0 ? std::optional(points->item(0)) : std::nullopt;
+    }
+    default:
+      return std::nullopt;
+  }
+}
+
+Mesh read_mesh(const JsonCursor& json, std::size_t kind, const Base& base) {
+  switch (kind) {
+    case quad:
+      return make_quad(base.point(json.at("origin")), json.at("u").vec3(), json.at("v").vec3());
+    case box:
+      return read_box(json, base);
+    case arch:
+      return read_arch(json);
+    case lathe:
+      return read_lathe(json);
+    case cylinder:
+      return read_cylinder(json, base);
+    default:
+      return read_inline_mesh(json, base);
+  }
+}
+
+}  // namespace
+
+void read_shape(const JsonCursor& json, const std::vector<Placement>& around, JsonLoad& load,
+                int depth) {
+  const std::size_t kind = json.at("shape").choice(kShapes);
+  const bool from_file = kind == mesh_shape && json.find("file").has_value();
+  check_shape_keys(json, kind, from_file);
+  const bool exact = load.scene.space.exact;
+  std::vector<Placement> placements = combine(json, read_placements(json, exact), around, exact);
+  if (kind == group) {
+    if (depth == kMaxGroupDepth)
+      json.fail(fmt::format("more than {} groups within groups", kMaxGroupDepth));
+    for (const JsonCursor& part : json.at("shapes").items())
+      read_shape(part, placements, load, depth + 1);
+    return;
+  }
+
+  const int material = read_material_name(json, load.scene, !from_file);
+  const auto name_json = json.find("name"), flip_json = json.find("flip");
+  const std::string name = name_json ? name_json->text() : json.path();
+  const bool flipped = flip_json && flip_json->boolean();
+  if (from_file) return add_mesh_file(json, material, flipped, placements, load);
+  if (kind == sphere) {
+    const Imath::V3d center = json.at("center").vec3d();
+    const Sphere ball{name, Vec3(center), json.at("radius").number(kPositive), material};
+    return exact ? add_sphere(json, ball, center, placements, load)
+                 : add_sphere(json, ball, ball.center, placements, load);
+  }
+  const Base base(load, point_of(json, kind));
+  Mesh mesh = read_mesh(json, kind, base);
+  if (exact) {
+    const Placement back = Placement().setTranslation(base.place());
+    for (Placement& placement : placements) placement = back * placement;
+  }
+  if (const auto scale = json.find("uv_scale")) {
+    const Vec2 factors = scale->vec2();
+    for (Vec2& uv : mesh.uvs) uv *= factors;
+  }
+  if (flipped) flip(mesh);
+  mesh.name = name;
+  mesh.material = material;
+  add_mesh(json, mesh, placements, load);
+}
+
+}  // namespace psf::render

@@ -1,0 +1,114 @@
+// A loaded scene: plain data that the loaders fill and the light transport reads.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/vec.h"
+#include "render/scene/space.h"
+#include "render/scene/texture.h"
+
+namespace psf::render {
+
+constexpr int kNone = -1;  // no texture, no light
+
+enum class MaterialKind : std::uint8_t {
+  diffuse,    // Lambert
+  mirror,     // perfect, tinted by reflectance
+  glass,      // smooth dielectric of index `ior`, transmission tinted by reflectance
+  conductor,  // GGX, Fresnel by Schlick with `reflectance` at normal incidence
+  coat,  // dielectric GGX coat of `ior` over a diffuse base; `metalness` blends it into a conductor
+  gloss  // GGX, Fresnel by Schlick with `specular` at normal incidence, over a diffuse base
+};
+
+struct Material {
+  std::string name;
+  MaterialKind kind = MaterialKind::diffuse;
+  Rgb reflectance{0.5f, 0.5f, 0.5f};
+  int reflectance_texture = kNone;  // multiplies reflectance
+  Rgb specular{0, 0, 0};            // reflectance of gloss at normal incidence
+  float roughness = 0.5f;           // perceptual: GGX alpha = roughness^2
+  float metalness = 0;
+  int roughness_metalness_texture = kNone;  // glTF: G multiplies roughness, B multiplies metalness
+  float ior = 1.5f;
+  bool two_sided = true;  // false: the back side reflects nothing
+  bool emits_two_sided = false;
+  Rgb emission{0, 0, 0};  // radiance of the front side
+  int emission_texture = kNone;
+};
+
+// Triangles with one material. Counter-clockwise seen from the front.
+struct Mesh {
+  std::string name;
+  std::vector<Vec3> positions;
+  std::vector<Vec3> normals;  // empty, or one unit vector per position
+  std::vector<Vec2> uvs;      // empty, or one per position
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  int material = 0;
+};
+
+struct Sphere {
+  std::string name;
+  Vec3 center{0, 0, 0};
+  float radius = 1;  // front is outside
+  int material = 0;
+};
+
+enum class LightKind : std::uint8_t { point, directional, spot };
+
+// A light without surface. Lights with a surface are the emissive meshes and spheres.
+struct Light {
+  std::string name;
+  LightKind kind = LightKind::point;
+  Vec3 position{0, 0, 0};    // point, spot; Vec3() would leave it, and the hash, undefined
+  Vec3 direction{0, 0, -1};  // directional, spot: unit, the direction in which light travels
+  // point, spot: radiant intensity, in the scene's unit of length; directional: irradiance on a
+  // facing surface
+  Rgb intensity{1, 1, 1};
+  float cos_inner = 1, cos_outer = 0;  // spot: full within inner, smooth falloff to 0 at outer
+  float angle = 0;  // directional: angular radius in radians, 0 for a point at infinity
+};
+
+// Light from infinity: a constant sky, or an equirectangular map times `radiance`.
+struct Environment {
+  Rgb radiance{0, 0, 0};
+  int texture = kNone;  // latitude-longitude; +y is up, the centre of the map looks along -z
+  float rotation = 0;   // radians about +y
+};
+
+// Most pixels of a side of a picture, so that the number of a pixel fits 32 bits.
+inline constexpr std::uint32_t kMaxSide = 65535;
+
+struct Camera {
+  std::string name;
+  Vec3 eye{0, 0, 0}, target{0, 0, -1}, up{0, 1, 0};
+  float fov = 0.7f;        // horizontal field of view, radians
+  float vertical_fov = 0;  // where above 0, fov follows from it and the shape of the picture
+  std::uint32_t width = 512, height = 512;
+  float lens_radius = 0;     // 0: pinhole
+  float focus_distance = 1;  // along the view axis, used where lens_radius > 0
+};
+
+// All coordinates and lengths are those of `space`, which is the world except for scenes that are
+// far from the world's origin, huge or tiny.
+struct Scene {
+  std::string name;  // file name without folder
+  std::string hash;  // hexadecimal, over everything that shapes the picture (files and command-line
+                     // changes)
+  std::vector<Texture> textures;
+  std::vector<Material> materials;
+  std::vector<Mesh> meshes;
+  std::vector<Sphere> spheres;
+  std::vector<Light> lights;
+  Environment environment;
+  std::vector<Camera> cameras;
+  std::vector<std::string> files;     // other files that were read; some may occur more than once
+  std::vector<std::string> warnings;  // what was repaired or left out while loading, one line each
+  Space space;
+  Space wanted;  // where `exact` is set: the space in which the scene must be loaded instead
+};
+
+}  // namespace psf::render

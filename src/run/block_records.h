@@ -1,0 +1,34 @@
+// The records of one block with their memory, reused from block to block.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "filter/records.h"
+
+namespace psf::run {
+
+// Columns that were not asked for are empty. Vec3 and Rgb are three packed floats.
+struct BlockRecords {
+  std::vector<std::uint8_t> flags;
+  std::vector<Vec3> position;
+  std::vector<float> distance;
+  std::vector<Rgb> throughput, contribution, unfiltered;
+  std::vector<std::uint32_t> pixel;
+  std::vector<std::uint16_t> camera;
+  std::vector<Vec3> normal;
+  std::vector<Rgb> reflectance;
+  std::vector<std::uint32_t> visibility;
+  std::vector<float> hit_distance;
+  std::vector<Vec3> direction;
+  std::vector<std::uint32_t> material;
+  std::vector<float> roughness;
+
+  [[nodiscard]] filter::Records view() const {
+    return {flags,      position,     distance,  throughput, contribution,
+            unfiltered, pixel,        camera,    normal,     reflectance,
+            visibility, hit_distance, direction, material,   roughness};
+  }
+};
+
+}  // namespace psf::run

@@ -1,0 +1,68 @@
+// Reads a path-vertex buffer for the filter: cameras, passes, and blocks of the channels in use.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "filter/blocks.h"
+#include "filter/parameters.h"
+#include "formats/layout/metadata.h"
+#include "formats/read/reader.h"
+#include "run/block_records.h"
+
+namespace psf::run {
+
+// The channels to read, by their place in the file; those not set are not read. A channel that a
+// dump may lack has a default: without `flags` every path has a shaded vertex, without `unfiltered`
+// u is 0, without `camera` every path belongs to camera 0.
+struct ChannelSet {
+  std::optional<std::size_t> flags, position, distance, throughput, contribution, unfiltered, pixel,
+      camera, normal, reflectance, visibility, hit_distance, direction, material, roughness;
+};
+
+class Dump {
+ public:
+  // Throws what formats::Reader throws; Error{bad_input} where there is no committed pass or no
+  // camera.
+  explicit Dump(const std::string& path);
+
+  // Takes in what was committed since the file was read; returns whether there was anything new.
+  // Throws what the constructor throws.
+  bool refresh();
+
+  [[nodiscard]] const formats::Reader& reader() const { return reader_; }
+  [[nodiscard]] const formats::Metadata& metadata() const { return metadata_; }
+  [[nodiscard]] const std::vector<filter::CameraView>& cameras() const { return cameras_; }
+  [[nodiscard]] std::uint64_t pixels() const { return pixels_; }  // number over all cameras
+  // The first path of each pass, and the end of the last one.
+  [[nodiscard]] const std::vector<std::uint64_t>& pass_bounds() const { return pass_bounds_; }
+
+  // The channels that `parameters` use; with `guides`, also normal and reflectance where the file
+  // has them. Throws Error{bad_input} that names a channel that is missing or has another type, and
+  // what needs it.
+  [[nodiscard]] ChannelSet select(const filter::Parameters& parameters, bool guides) const;
+
+  // Reads the paths [range.first, range.last), columns in parallel. Throws Error{bad_input} that
+  // names a record whose pixel or camera does not exist. Thread-safe.
+  void read(const filter::PathRange& range, const ChannelSet& channels, BlockRecords& out) const;
+
+ private:
+  [[nodiscard]] std::optional<std::size_t> find(const char* channel, formats::Type type,
+                                                std::size_t components) const;
+  [[nodiscard]] std::size_t require(const char* channel, formats::Type type, std::size_t components,
+                                    std::string_view wanted_by,
+                                    std::string_view instead = {}) const;
+  void set_pass_bounds();
+  void require_angles() const;
+  void check_pixels(const filter::PathRange& range, const BlockRecords& records) const;
+
+  formats::Reader reader_;
+  formats::Metadata metadata_;
+  std::vector<filter::CameraView> cameras_;
+  std::uint64_t pixels_ = 0;
+  std::vector<std::uint64_t> pass_bounds_;
+};
+
+}  // namespace psf::run

@@ -1,0 +1,80 @@
+// The pictures of one camera for many radii, kept as sums over paths [pixel].
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "film/film.h"
+#include "filter/average.h"
+#include "filter/records.h"
+
+namespace psf::run {
+
+class ManyPictures {
+ public:
+  ManyPictures(const filter::CameraView& camera, std::size_t radii);
+
+  [[nodiscard]] std::size_t width() const { return input_.width(); }
+  [[nodiscard]] std::size_t height() const { return input_.height(); }
+
+  // The filtered picture for radius k, (height, width); the same as from CameraPictures, except for
+  // rounding.
+  [[nodiscard]] std::vector<Rgb> filtered(std::size_t k) const;
+  // The picture without filter of the same paths, (height, width), as from CameraPictures.
+  [[nodiscard]] std::vector<Rgb> unfiltered() const;
+  // The mean of u_i, (height, width): the part of filtered() that is the same for every radius.
+  [[nodiscard]] std::vector<Rgb> u() const;
+
+  // The number of radii in a group, which are added together.
+  static constexpr std::size_t kTogether = 8;
+
+  // The bytes per pixel that the sums for `radii` radii take.
+  [[nodiscard]] static constexpr std::uint64_t bytes_of_sums(std::size_t radii) {
+    return 3 * sizeof(double) * ((radii + kTogether - 1) / kTogether * kTogether + 2) +
+           2 * sizeof(std::uint64_t);
+  }
+
+  // Whether record i is a source whose u + alpha c is not finite; such a path is in no picture.
+  [[nodiscard]] static bool overflows(const filter::Records& records, filter::Role role,
+                                      std::size_t i);
+  // Adds record i of a block to all pictures, without alpha c_bar, which add_filtered() adds. Does
+  // nothing for records that are left out or overflow.
+  void add_record(const filter::Records& records, filter::Role role, std::size_t i);
+  // Adds alpha c_bar of record i for the radii [first, first + c_bar.size()). The record itself
+  // must not overflow. A radius for which u + alpha c_bar overflows is not added, and `overflows`
+  // is called with it.
+  void add_filtered(const filter::Records& records, std::size_t i, std::size_t first,
+                    std::span<const Rgb> c_bar,
+                    const std::function<void(std::size_t radius)>& overflows);
+  // Takes back what add_record() added for record i, in the picture of radius k alone.
+  void leave_out(const filter::Records& records, std::size_t i, std::size_t k);
+
+ private:
+  // Adds alpha c_bar for radii of one group, from place `first` in it on. Returns the radii that
+  // overflow: bit k stands for c_bar[k].
+  std::uint32_t add_group(const Rgb& alpha, double* sum, std::size_t first,
+                          std::span<const Rgb> c_bar);
+  struct Missing {
+    std::uint64_t paths = 0;
+    double u[3] = {};
+  };
+
+  [[nodiscard]] const double* filtered_sum(std::size_t pixel, std::size_t k) const {
+    const std::size_t group = k / kTogether;
+    return &filtered_[((pixel * groups_ + group) * kTogether + k % kTogether) * 3];
+  }
+
+  std::size_t groups_;                // number of groups of kTogether radii
+  std::vector<double> filtered_;      // (pixels, groups, kTogether, 3) sums of alpha c_bar
+  std::vector<double> u_;             // (pixels, 3) sums of u
+  std::vector<std::uint64_t> paths_;  // (pixels) number of paths
+  film::Film input_;
+  std::map<std::pair<std::uint32_t, std::size_t>, Missing> missing_;  // by pixel and radius
+};
+
+}  // namespace psf::run

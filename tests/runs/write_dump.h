@@ -1,0 +1,87 @@
+// Writes records of a test as a path-vertex buffer.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "../filter/record_set.h"
+#include "formats/layout/metadata.h"
+#include "formats/write/writer.h"
+
+namespace psf::tests {
+
+struct DumpOptions {
+  std::vector<filter::CameraView> cameras;
+  std::vector<std::size_t> passes;  // records each; they add up to all
+  std::vector<std::string> without_channels;
+  std::string enumeration = "pixel";
+  formats::Codec codec = formats::Codec::zstd;
+  std::uint32_t chunk_capacity = 100;
+  std::uint32_t shade_rate = 1;
+};
+
+inline void write_dump(const std::string& path, const RecordSet& set, const DumpOptions& options) {
+  formats::Metadata metadata;
+  metadata.scene_hash = "abc";
+  metadata.seed = 17;
+  metadata.enumeration = options.enumeration;
+  metadata.shade_rate = options.shade_rate;
+  for (const filter::CameraView& camera : options.cameras) {
+    formats::CameraInfo info;
+    info.name = "camera " + std::to_string(metadata.cameras.size());
+    info.width = camera.width;
+    info.height = camera.height;
+    info.angle_per_pixel = camera.angle_per_pixel;
+    metadata.cameras.push_back(info);
+  }
+  formats::Head head;
+  head.metadata = formats::to_json(metadata);
+  head.chunk_capacity = options.chunk_capacity;
+  struct Source {
+    const void* data;
+    std::size_t stride;
+  };
+  std::vector<Source> sources;
+  const auto add = [&](const char* name, formats::Type type, std::uint8_t components,
+                       const void* data) {
+    const auto& without = options.without_channels;
+    if (std::find(without.begin(), without.end(), name) != without.end()) return;
+    head.channels.push_back({name, type, components, formats::Encoding::plain});
+    sources.push_back({data, head.channels.back().stride()});
+  };
+  using formats::Type;
+  add("position", Type::f32, 3, set.position.data());
+  add("normal", Type::f32, 3, set.normal.data());
+  add("reflectance", Type::f32, 3, set.reflectance.data());
+  add("throughput", Type::f32, 3, set.throughput.data());
+  add("contribution", Type::f32, 3, set.contribution.data());
+  add("unfiltered", Type::f32, 3, set.unfiltered.data());
+  add("distance", Type::f32, 1, set.distance.data());
+  add("pixel", Type::u32, 1, set.pixel.data());
+  add("flags", Type::u8, 1, set.flags.data());
+  add("camera", Type::u16, 1, set.camera.data());
+  add("visibility", Type::u32, 1, set.visibility.data());
+  add("hit_distance", Type::f32, 1, set.hit_distance.data());
+  add("direction", Type::f32, 3, set.direction.data());
+  add("material", Type::u32, 1, set.material.data());
+  add("roughness", Type::f32, 1, set.roughness.data());
+
+  formats::WriterOptions writer_options;
+  writer_options.codec = options.codec;
+  writer_options.sync = false;
+  formats::Writer writer(path, head, writer_options);
+  std::size_t first = 0;
+  for (const std::size_t count : options.passes) {
+    std::vector<const void*> columns;
+    for (const Source& source : sources) {
+      columns.push_back(static_cast<const char*>(source.data) + first * source.stride);
+    }
+    writer.append(count, columns);
+    writer.commit();
+    first += count;
+  }
+  writer.close();
+}
+
+}  // namespace psf::tests
