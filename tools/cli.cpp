@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <malloc.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +26,20 @@ struct Ending {
   ErrorCode code{};
   std::string program, message;
 };
+
+// The long options of the program and all its verbs.
+std::set<std::string>& option_names() {
+  static std::set<std::string> names;
+  return names;
+}
+void note_options(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    option_names().insert(option->get_lnames().begin(), option->get_lnames().end());
+  }
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    note_options(*verb);
+  }
+}
 
 // The innermost subcommand that was parsed: its name is what the user must ask for help.
 const CLI::App* selected(const CLI::App* app) {
@@ -48,6 +64,7 @@ std::string explain(const CLI::App& command, const CLI::ParseError& error) {
 // Parses and works.
 Ending run(CLI::App& app, int argc, char** argv) {
   const std::string program = app.get_name();
+  note_options(app);
   try {
     app.parse(argc, argv);
     return {};
@@ -60,7 +77,7 @@ Ending run(CLI::App& app, int argc, char** argv) {
     return {ErrorCode::usage, name,
             fmt::format("{}; see {} --help", explain(*command, error), name)};
   } catch (const Error& error) {
-    return {error.code(), program, error.what()};
+    return {error.code(), program, as_options(error.what())};
   } catch (const std::bad_alloc&) {
     return {ErrorCode::limit, program, "out of memory; use a smaller block or picture"};
   } catch (const std::filesystem::filesystem_error& error) {
@@ -90,6 +107,25 @@ void check_files(const std::vector<std::string>& inputs, const std::vector<std::
   for (const std::string& path : outputs) {
     if (!path.empty()) const core::OutputFile probe(path);
   }
+}
+
+std::string as_options(const std::string& message) {
+  std::string text;
+  for (std::size_t at = 0; at < message.size();) {
+    const std::size_t begin = std::min(message.find('`', at), message.size());
+    const std::size_t end = message.find('`', begin + 1);
+    text += message.substr(at, begin - at);
+    if (end == std::string::npos) return text + message.substr(begin);
+    const std::string quoted = message.substr(begin + 1, end - begin - 1);
+    const bool is_option = option_names().contains(quoted.substr(0, quoted.find_first_of(" =")));
+    if (is_option) {
+      text += "--" + quoted;
+    } else {
+      text += "`" + quoted;
+    }
+    at = is_option ? end + 1 : end;  // what closes one pair may open another
+  }
+  return text;
 }
 
 void set_example(CLI::App& command, const std::string& example) {

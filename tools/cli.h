@@ -30,6 +30,10 @@ int run_tool(CLI::App& app, int argc, char** argv);
 // for blocks of 65,536 records. It holds for the whole process.
 void keep_freed_memory();
 
+// The text of a message with its parameters as options: the library writes "`r0 8px`", a user of
+// this program gives "--r0 8px". Other words in backquotes stay as they are.
+[[nodiscard]] std::string as_options(const std::string& message);
+
 // Sets the example at the end of a command's --help, in a paragraph of its own.
 void set_example(CLI::App& command, const std::string& example);
 

@@ -78,8 +78,10 @@ __attribute__((section(".preinit_array"),
 }  // namespace psf::tools
 
 // In place of the C library's, for all libraries.
-extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attributes,
-                              void* (*start)(void*), void* argument) noexcept {
+extern "C" [[gnu::visibility("default")]] int pthread_create(pthread_t* thread,
+                                                             const pthread_attr_t* attributes,
+                                                             void* (*start)(void*),
+                                                             void* argument) noexcept {
   using Create = int(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
   static Create* const create =
       reinterpret_cast<Create*>(::dlsym(RTLD_NEXT, "pthread_create"));  // NOLINT: so POSIX has it

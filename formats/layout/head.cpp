@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "formats/layout/channels.h"
 #include "formats/layout/layout.h"
 
 namespace psf::formats {
@@ -53,8 +54,8 @@ std::string to_text(const Channel& channel) {
 }
 
 bool is_required_channel(std::string_view name) {
-  return name == "position" || name == "throughput" || name == "contribution" ||
-         name == "distance" || name == "pixel";
+  const ChannelInfo* channel = channel_info(name);
+  return channel != nullptr && channel->required;
 }
 
 std::optional<std::size_t> Head::find(std::string_view channel) const {

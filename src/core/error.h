@@ -19,10 +19,13 @@ enum class ErrorCode : int {
 // Thrown for bad input and failed I/O, caught once, in main. The message is one line that names the
 // file, the place in it and the remedy: "room.json: /materials/2/roughness: expected a number in
 // [0, 1]".
-class Error : public std::runtime_error {
+// Visible outside libpsf, where it is caught.
+class [[gnu::visibility("default")]] Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
-  [[nodiscard]] ErrorCode code() const noexcept { return code_; }
+  [[nodiscard]] ErrorCode code() const noexcept {
+    return code_;
+  }
 
  private:
   ErrorCode code_;

@@ -73,6 +73,14 @@ void watch_interrupts() {
   }
 }
 
+void interrupt() noexcept {
+  static_cast<void>(is_first());
+}
+
+void clear_interrupt() noexcept {
+  first = 0;
+}
+
 bool interrupted() noexcept {
   return first != 0;
 }

@@ -10,6 +10,9 @@ namespace psf::core {
 // SIGPIPE are ignored).
 void watch_interrupts();
 [[nodiscard]] bool interrupted() noexcept;
+// Sets the flag as a signal would, and takes it back, for programs with handlers of their own.
+void interrupt() noexcept;
+void clear_interrupt() noexcept;
 // Throws Error{interrupted} where the flag is set; `what`, the end of its message, says what is
 // left behind.
 void throw_if_interrupted(const char* what);

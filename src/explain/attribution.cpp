@@ -84,9 +84,8 @@ class Tracer {
   }
 
   void count_refusals() {
-    const auto on = terms_on(e_.request.parameters.weights);
     for (std::size_t k = 0; k < filter::kTermCount; ++k) {
-      if (!on[k]) continue;
+      if (!e_.request.parameters.weights.on(static_cast<filter::Term>(k))) continue;
       const std::uint32_t bit = 1u << k;
       TermRefusals of;
       of.term = k;

@@ -89,7 +89,7 @@ void BlockExplainer::find_pairs(std::uint32_t i, std::vector<ExplainedPair>& pai
   if ((room -= static_cast<std::int64_t>(found.size()) + 1) < 0) {
     throw Error(ErrorCode::limit,
                 "the balls around this pixel's vertices hold too many sources to list; choose a "
-                "smaller --r0 or --block, fewer --passes, or one --path");
+                "smaller `r0` or `block`, fewer `passes`, or one `path`");
   }
   const auto add = [&](std::uint32_t j, float d_sq) {
     ExplainedPair pair;

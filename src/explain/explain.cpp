@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "explain/block.h"
 #include "filter/blocks.h"
+#include "filter/channels.h"
 
 namespace psf::explain {
 namespace {
@@ -26,15 +27,20 @@ std::string name_of(const run::Dump& dump, std::size_t camera) {
 // All that a term can look at, where the file has it, beside what the parameters need.
 run::ChannelSet select_all(const run::Dump& dump, const filter::Parameters& parameters) {
   static_cast<void>(dump.select(parameters, true));  // names what this run misses
-  const auto has = [&dump](const char* channel) {
+  const auto has = [&dump](std::string_view channel) {
     return dump.reader().head().find(channel).has_value();
   };
   filter::Parameters all = parameters;
-  if (has("visibility")) all.weights.visibility = true;
-  if (has("material")) all.weights.material = true;
-  if (has("hit_distance")) all.weights.hit_distance = 0.0f;
-  if (has("direction")) all.weights.direction = 0.0f;
-  if (has("roughness") && has("normal") && has("direction")) all.weights.gloss = 1.0f;
+  // With a term the channels that it needs are read, whatever its threshold.
+  for (std::size_t k = 0; k < filter::kTermCount; ++k) {
+    const filter::TermInfo& term = filter::kTerms[k];
+    const bool is_possible =
+        std::all_of(term.channels.begin(), term.channels.end(),
+                    [&](std::string_view channel) { return channel.empty() || has(channel); });
+    if (!is_possible) continue;
+    if (term.threshold == nullptr) all.weights.*term.is_on = true;
+    if (term.threshold != nullptr) all.weights.*term.threshold = 1.0f;
+  }
   if (has("distance") && all.radius.basis == filter::RadiusBasis::world) {
     all.radius.basis = filter::RadiusBasis::distance;
   }
@@ -42,24 +48,9 @@ run::ChannelSet select_all(const run::Dump& dump, const filter::Parameters& para
 }
 
 void append(const filter::Records& from, std::size_t i, run::BlockRecords& to) {
-  const auto copy = [i](const auto& column, auto& out) {
-    if (!column.empty()) out.push_back(column[i]);
-  };
-  copy(from.flags, to.flags);
-  copy(from.position, to.position);
-  copy(from.distance, to.distance);
-  copy(from.throughput, to.throughput);
-  copy(from.contribution, to.contribution);
-  copy(from.unfiltered, to.unfiltered);
-  copy(from.pixel, to.pixel);
-  copy(from.camera, to.camera);
-  copy(from.normal, to.normal);
-  copy(from.reflectance, to.reflectance);
-  copy(from.visibility, to.visibility);
-  copy(from.hit_distance, to.hit_distance);
-  copy(from.direction, to.direction);
-  copy(from.material, to.material);
-  copy(from.roughness, to.roughness);
+  filter::for_each_channel([&](const char*, const auto& member) {
+    if (!member(from).empty()) member(to).push_back(member(from)[i]);
+  });
 }
 
 class Explainer {
@@ -93,16 +84,16 @@ class Explainer {
     const filter::PathRange all = blocks_->all();
     if (request.path) {
       if (*request.path < all.first || *request.path >= all.last) {
-        refuse(fmt::format("--path: {} is not among the paths {} to {} of the passes chosen",
+        refuse(fmt::format("`path`: {} is not among the paths {} to {} of the passes chosen",
                            *request.path, all.first, all.last - 1));
       }
       records_of_paths_ = {*request.path};
       return;
     }
-    if (request.camera >= dump_.cameras().size()) refuse("--camera: there is no such camera");
+    if (request.camera >= dump_.cameras().size()) refuse("`camera`: there is no such camera");
     const filter::CameraView& camera = dump_.cameras()[request.camera];
     if (request.x >= camera.width || request.y >= camera.height) {
-      refuse(fmt::format("--pixel: {},{} is outside the picture of {}, 0,0 to {},{}", request.x,
+      refuse(fmt::format("`pixel`: {},{} is outside the picture of {}, 0,0 to {},{}", request.x,
                          request.y, name_of(dump_, request.camera), camera.width - 1,
                          camera.height - 1));
     }
@@ -124,7 +115,7 @@ class Explainer {
       throw Error(
           ErrorCode::bad_input,
           fmt::format("{}: none of the paths chosen falls into pixel {},{} of {}; choose "
-                      "another pixel or more --passes",
+                      "another pixel or more `passes`",
                       dump_.reader().path(), request.x, request.y, name_of(dump_, request.camera)));
     }
   }
@@ -205,7 +196,7 @@ ExplainResult explain(const run::Dump& dump, const ExplainRequest& request) {
   if (estimator != Estimator::average && estimator != Estimator::disk &&
       estimator != Estimator::adaptive) {
     refuse(
-        "--estimator: only those that average over a ball can be explained: average, adaptive, "
+        "`estimator`: only those that average over a ball can be explained: average, adaptive, "
         "disk");
   }
   return Explainer(dump, request).run();

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "filter/records.h"
 #include "run/block_records.h"
 #include "run/dump.h"

@@ -4,23 +4,15 @@
 #include <numbers>
 #include <optional>
 #include <span>
+#include <string_view>
 
+#include "filter/channels.h"
 #include "filter/values.h"
 
 namespace psf::explain {
 namespace {
 
-// Places in filter::kTermNames.
-enum Term : std::size_t {
-  kNormal,
-  kReflectance,
-  kVisibility,
-  kHitDistance,
-  kPlane,
-  kDirection,
-  kMaterial,
-  kGloss
-};
+using filter::Term;
 
 // Thresholds that a person would try, from the loosest to the strictest.
 constexpr std::array kCosines = {0.5f, 0.7f, 0.8f, 0.9f, 0.95f, 0.98f, 0.99f, 0.995f, 0.999f};
@@ -29,83 +21,37 @@ constexpr std::array kLobes = {4.0f, 2.0f, 1.0f, 0.5f, 0.25f};
 constexpr std::array kOn = {1.0f};
 
 // The thresholds to try for a term: those that are stricter than its threshold in use, if any.
-// Empty where the file lacks the term's channel.
-std::span<const float> ladder(const ExplainResult& e, std::size_t term) {
+// Empty where the file lacks a channel of the term.
+std::span<const float> ladder(const ExplainResult& e, Term term) {
   const filter::WeightTerms& on = e.request.parameters.weights;
-  const run::BlockRecords& v = e.vertices;
-  const auto up = [](std::span<const float> all, const std::optional<float>& t) {
-    return all.subspan(static_cast<std::size_t>(
-        t ? std::upper_bound(all.begin(), all.end(), *t) - all.begin() : 0));
-  };
-  const auto down = [](std::span<const float> all, const std::optional<float>& t) {
-    return all.subspan(static_cast<std::size_t>(
-        t ? std::upper_bound(all.begin(), all.end(), *t, std::greater<>()) - all.begin() : 0));
-  };
-  const auto flag = [](bool has, bool is_on) {
-    return has && !is_on ? std::span<const float>(kOn) : std::span<const float>();
-  };
-  switch (term) {
-    case kNormal:
-      return v.normal.empty() ? std::span<const float>() : up(kCosines, on.normal);
-    case kReflectance:
-      return v.reflectance.empty() ? std::span<const float>() : down(kDifferences, on.reflectance);
-    case kVisibility:
-      return flag(!v.visibility.empty(), on.visibility);
-    case kHitDistance:
-      return v.hit_distance.empty() ? std::span<const float>()
-                                    : down(kDifferences, on.hit_distance);
-    case kPlane:
-      return v.normal.empty() ? std::span<const float>() : down(kDifferences, on.plane);
-    case kDirection:
-      return v.direction.empty() ? std::span<const float>() : up(kCosines, on.direction);
-    case kGloss:
-      return v.normal.empty() || v.direction.empty() || v.roughness.empty()
-                 ? std::span<const float>()
-                 : down(kLobes, on.gloss);
-    default:
-      return flag(!v.material.empty(), on.material);
+  const filter::TermInfo& of = filter::info(term);
+  for (const std::string_view channel : of.channels) {
+    if (!channel.empty() && !filter::has_channel(e.vertices, channel)) return {};
   }
+  if (of.threshold == nullptr) return on.on(term) ? std::span<const float>() : kOn;
+  const std::optional<float>& t = on.*of.threshold;
+  const bool is_cosine = of.least < 0;  // stricter is larger
+  const std::span<const float> all = is_cosine             ? std::span<const float>(kCosines)
+                                     : term == Term::gloss ? std::span<const float>(kLobes)
+                                                           : std::span<const float>(kDifferences);
+  if (!t) return all;
+  const auto next = is_cosine ? std::upper_bound(all.begin(), all.end(), *t)
+                              : std::upper_bound(all.begin(), all.end(), *t, std::greater<>());
+  return all.subspan(static_cast<std::size_t>(next - all.begin()));
 }
 
-filter::WeightTerms only(std::size_t term, float threshold) {
+filter::WeightTerms only(Term term, float threshold) {
   filter::WeightTerms terms = filter::WeightTerms::none();
-  switch (term) {
-    case kNormal:
-      terms.normal = threshold;
-      break;
-    case kReflectance:
-      terms.reflectance = threshold;
-      break;
-    case kVisibility:
-      terms.visibility = true;
-      break;
-    case kHitDistance:
-      terms.hit_distance = threshold;
-      break;
-    case kPlane:
-      terms.plane = threshold;
-      break;
-    case kDirection:
-      terms.direction = threshold;
-      break;
-    case kGloss:
-      terms.gloss = threshold;
-      break;
-    default:
-      terms.material = true;
-      break;
+  const filter::TermInfo& of = filter::info(term);
+  if (of.threshold != nullptr) {
+    terms.*of.threshold = threshold;
+  } else {
+    terms.*of.is_on = true;
   }
   return terms;
 }
 
 }  // namespace
-
-std::array<bool, filter::kTermCount> terms_on(const filter::WeightTerms& terms) {
-  return {terms.normal.has_value(), terms.reflectance.has_value(),
-          terms.visibility,         terms.hit_distance.has_value(),
-          terms.plane.has_value(),  terms.direction.has_value(),
-          terms.material,           terms.gloss.has_value()};
-}
 
 Colour PixelIf::unfiltered(std::uint32_t vertex) const {
   return e_.vertices.unfiltered.empty() ? Colour(0, 0, 0) : wide(e_.vertices.unfiltered[vertex]);
@@ -142,7 +88,8 @@ std::vector<Remedy> find_remedies(const ExplainResult& explanation, const PixelI
                                   const std::vector<bool>& leaking) {
   const ExplainResult& e = explanation;
   std::vector<std::pair<double, Remedy>> found;
-  for (std::size_t term = 0; term < filter::kTermCount; ++term) {
+  for (std::size_t k = 0; k < filter::kTermCount; ++k) {
+    const auto term = static_cast<Term>(k);
     std::optional<std::pair<double, Remedy>> best;
     for (const float threshold : ladder(e, term)) {
       const filter::Weights weights(e.vertices.view(), only(term, threshold));
@@ -151,8 +98,8 @@ std::vector<Remedy> find_remedies(const ExplainResult& explanation, const PixelI
         return weights.pass(path.vertex, pair.vertex, path.radius);
       };
       Remedy remedy;
-      remedy.term = term;
-      if (term != kVisibility && term != kMaterial) remedy.threshold = threshold;
+      remedy.term = k;
+      if (filter::info(term).threshold != nullptr) remedy.threshold = threshold;
       std::uint64_t all[2] = {0, 0};
       for (const ExplainedPair& pair : e.pairs) {
         if (!pair.averaged || pair.self) continue;

@@ -10,9 +10,6 @@
 
 namespace psf::explain {
 
-// Whether each term of filter::kTermNames is on.
-[[nodiscard]] std::array<bool, filter::kTermCount> terms_on(const filter::WeightTerms& terms);
-
 // The value of the pixel if other pairs in the balls were averaged.
 class PixelIf {
  public:

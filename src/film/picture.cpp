@@ -187,7 +187,7 @@ Picture read(const std::string& path, const PictureRequest& request) {
     }
   }
   const ExrLayer layer =
-      choose_layer(path, exr_layers(parts), request.layer, request.fallback, request.option);
+      choose_layer(path, exr_layers(parts), request.layer, request.fallback, request.parameter);
   const auto part = static_cast<int>(layer.part);
   const Imf::Header& header = file.header(part);
   check_part(path, header);

@@ -24,9 +24,9 @@ struct Picture {
 };
 
 struct PictureRequest {
-  std::string layer;               // `name` of choose_layer(); empty: the only or the root layer
-  std::string fallback;            // layer to take where several would do
-  std::string option = "--layer";  // the option that names a layer, for messages
+  std::string layer;                  // `name` of choose_layer(); empty: the only or the root layer
+  std::string fallback;               // layer to take where several would do
+  std::string parameter = "`layer`";  // what names the layer, in messages
 };
 
 // Reads scan lines, tiles (the full picture of a mipmap), one part of several, float, half and

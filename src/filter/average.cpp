@@ -35,10 +35,10 @@ void finish(const Records& records, const Roles& roles, std::span<const float> r
 
 std::unique_ptr<Engine> engine_of(const Problem& problem, const Block& block,
                                   const Parameters& parameters) {
-  if (parameters.estimator != Estimator::hash) return make_engine(parameters.search, problem);
+  if (parameters.estimator != Estimator::hash) return make_engine(parameters.engine, problem);
   // Where r0 is 0 no record has a cell, and any scale does.
   const double scale = radius_scale(parameters.radius, block.n);
-  return make_hash(parameters.search, problem, scale > 0 ? scale : 1, block.first_path);
+  return make_hash(parameters.engine, problem, scale > 0 ? scale : 1, block.first_path);
 }
 
 void leave_out_queries(Average& result) {
@@ -71,7 +71,7 @@ Average average_scaled(const Records& records, std::span<const float> radius, co
   if (parameters.demodulate) previous = demodulated(records, roles);
   const std::span<const Rgb> values = parameters.demodulate ? previous : records.contribution;
   if (parameters.estimator == Estimator::adaptive) {
-    result.radius = adaptive_radii(parameters.search, {records, roles, radius, weights, {}}, values,
+    result.radius = adaptive_radii(parameters.engine, {records, roles, radius, weights, {}}, values,
                                    parameters.agree);
     radius = result.radius;
   }

@@ -51,7 +51,7 @@ Blocks::Blocks(const BlockSize& size, std::vector<std::uint64_t> pass_bounds,
   }
   if (longest > std::uint64_t{std::numeric_limits<std::int32_t>::max()}) {
     throw Error(ErrorCode::limit,
-                "--block: a block has " + std::to_string(longest) +
+                "`block`: a block has " + std::to_string(longest) +
                     " paths, 2147483647 are the most; choose a smaller block or fewer passes");
   }
 }

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 
 namespace psf::filter {
 

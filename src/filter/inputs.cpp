@@ -2,26 +2,17 @@
 
 #include <cmath>
 #include <string>
-#include <string_view>
 
 #include "core/error.h"
+#include "filter/channels.h"
 #include "filter/weights.h"
 
 namespace psf::filter {
 
 void require_channels(const Records& records, const Parameters& parameters) {
   if (records.size() == 0) return;
-  const auto has = [&records](std::string_view channel) {
-    if (channel == "normal") return !records.normal.empty();
-    if (channel == "reflectance") return !records.reflectance.empty();
-    if (channel == "visibility") return !records.visibility.empty();
-    if (channel == "hit_distance") return !records.hit_distance.empty();
-    if (channel == "direction") return !records.direction.empty();
-    if (channel == "material") return !records.material.empty();
-    return !records.roughness.empty();
-  };
   for (const ChannelNeed& need : optional_channels(parameters)) {
-    if (has(need.channel)) continue;
+    if (has_channel(records, need.channel)) continue;
     throw Error(ErrorCode::bad_input, "the records have no channel " + std::string(need.channel) +
                                           ", which " + std::string(need.wanted_by) + " needs");
   }
@@ -42,7 +33,7 @@ WeightTerms terms_in_use(const Records& records, const WeightTerms& terms) {
 std::vector<float> areas(const Records& records, const Roles& roles, const Block& block) {
   if (block.cameras.size() > 1) {
     throw Error(ErrorCode::usage,
-                "--estimator disk counts a surface once for every camera that sees it: "
+                "`estimator disk` counts a surface once for every camera that sees it: "
                 "it needs a dump of one camera");
   }
   std::vector<float> area(records.size());

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "filter/records.h"
 #include "filter/roles.h"
 #include "filter/values.h"

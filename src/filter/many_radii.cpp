@@ -45,7 +45,7 @@ struct Scales {
 };
 
 bool can_share(const Parameters& parameters) {
-  return parameters.iterations == 1 && parameters.search == search::Kind::flann &&
+  return parameters.iterations == 1 && parameters.engine == EngineKind::flann &&
          !parameters.count_refusals &&
          (parameters.estimator == Estimator::average || parameters.estimator == Estimator::disk);
 }

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 
 namespace psf::filter {
 

@@ -67,13 +67,13 @@ class Worker {
 
 class PlainEngine final : public Engine {
  public:
-  PlainEngine(search::Kind kind, const Problem& problem)
+  PlainEngine(EngineKind kind, const Problem& problem)
       : p_(problem),
         order_(search::compact_order(problem.records.position, problem.roles.queries)) {
     std::vector<Vec3> positions;
     positions.reserve(p_.roles.sources.size());
     for (const std::uint32_t j : p_.roles.sources) positions.push_back(p_.records.position[j]);
-    search_ = search::make_search(kind, positions);
+    search_ = search::make_search(search_of(kind), positions);
   }
 
   void average(std::span<const Rgb> values, bool count_refusals, std::span<Rgb> out,
@@ -98,7 +98,7 @@ class PlainEngine final : public Engine {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_plain(search::Kind kind, const Problem& problem) {
+std::unique_ptr<Engine> make_plain(EngineKind kind, const Problem& problem) {
   return std::make_unique<PlainEngine>(kind, problem);
 }
 

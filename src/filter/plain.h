@@ -8,6 +8,6 @@
 namespace psf::filter {
 
 // `kind`: plain or brute.
-[[nodiscard]] std::unique_ptr<Engine> make_plain(search::Kind kind, const Problem& problem);
+[[nodiscard]] std::unique_ptr<Engine> make_plain(EngineKind kind, const Problem& problem);
 
 }  // namespace psf::filter

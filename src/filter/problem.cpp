@@ -5,9 +5,9 @@
 
 namespace psf::filter {
 
-std::unique_ptr<Engine> make_engine(search::Kind kind, const Problem& problem) {
+std::unique_ptr<Engine> make_engine(EngineKind kind, const Problem& problem) {
   std::unique_ptr<Engine> engine;
-  if (kind == search::Kind::flann) engine = engine::make(problem);
+  if (kind == EngineKind::flann) engine = engine::make(problem);
   return engine ? std::move(engine) : make_plain(kind, problem);
 }
 

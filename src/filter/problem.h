@@ -5,11 +5,12 @@
 #include <memory>
 #include <span>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "filter/records.h"
 #include "filter/roles.h"
 #include "filter/statistics.h"
 #include "filter/weights.h"
+#include "search/search.h"
 
 namespace psf::filter {
 
@@ -36,7 +37,12 @@ class Engine {
                        std::span<std::uint32_t> neighbors, Statistics& statistics) = 0;
 };
 
+// The search of the engines that search for each record.
+[[nodiscard]] inline search::Kind search_of(EngineKind kind) {
+  return kind == EngineKind::brute ? search::Kind::brute : search::Kind::flann;
+}
+
 // `problem` must outlive the engine.
-[[nodiscard]] std::unique_ptr<Engine> make_engine(search::Kind kind, const Problem& problem);
+[[nodiscard]] std::unique_ptr<Engine> make_engine(EngineKind kind, const Problem& problem);
 
 }  // namespace psf::filter

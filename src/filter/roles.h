@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "filter/records.h"
 #include "filter/statistics.h"
 

@@ -2,32 +2,15 @@
 // float and in this order of operations; every search and every kernel must decide as it does.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <string_view>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "filter/records.h"
+#include "search/ball.h"
 
 namespace psf::filter {
-
-inline constexpr std::size_t kTermCount = 8;
-// The names of the terms, which are those of the options, in the order of WeightTerms.
-inline constexpr std::array<const char*, kTermCount> kTermNames = {
-    "normal", "reflectance", "visibility", "hit-distance",
-    "plane",  "direction",   "material",   "gloss"};
-
-// A set of terms: bit k stands for term k of kTermNames.
-using TermSet = std::uint32_t;
-
-// The number of the term that an option such as "--normal" sets; kTermCount for other options.
-[[nodiscard]] inline std::size_t term_of(std::string_view option) {
-  std::size_t k = 0;
-  while (k < kTermCount && !(option.starts_with("--") && option.substr(2) == kTermNames[k])) ++k;
-  return k;
-}
 
 [[nodiscard]] inline bool normal_term(const Vec3& n_i, const Vec3& n_j, float t) {
   return dot(n_i, n_j) >= t;

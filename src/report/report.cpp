@@ -84,7 +84,7 @@ class PictureWriter {
       if (!std::filesystem::exists(picture.file)) {
         throw Error(ErrorCode::io, picture.file +
                                        ": no such picture, though the study names it; "
-                                       "write the study anew, or --max-pictures 0");
+                                       "write the study anew, or `max-pictures 0`");
       }
       const EncodedPicture encoded = encode_picture(film::read_exr(picture.file));
       study::Json entry = {{"id", picture.id},

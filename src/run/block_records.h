@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "filter/channels.h"
 #include "filter/records.h"
 
 namespace psf::run {
@@ -25,9 +26,10 @@ struct BlockRecords {
   std::vector<float> roughness;
 
   [[nodiscard]] filter::Records view() const {
-    return {flags,      position,     distance,  throughput, contribution,
-            unfiltered, pixel,        camera,    normal,     reflectance,
-            visibility, hit_distance, direction, material,   roughness};
+    filter::Records records;
+    filter::for_each_channel(
+        [&](const char*, const auto& member) { member(records) = member(*this); });
+    return records;
   }
 };
 

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "formats/layout/channels.h"
 
 namespace psf::run {
 namespace {
@@ -85,25 +86,26 @@ void Dump::set_pass_bounds() {
   pass_bounds_.push_back(reader_.records());
 }
 
-std::optional<std::size_t> Dump::find(const char* channel, Type type,
-                                      std::size_t components) const {
+std::optional<std::size_t> Dump::find(std::string_view channel) const {
   const std::optional<std::size_t> place = reader_.head().find(channel);
   if (!place) return std::nullopt;
   const formats::Channel& found = reader_.head().channels[*place];
+  const formats::ChannelInfo& known = *formats::channel_info(channel);
   const bool octahedral = found.encoding == formats::Encoding::octahedral;
-  const bool fits = type == Type::f32 ? octahedral || is_float(found.type) : found.type == type;
-  if (!fits || found.decoded_components() != components) {
+  const bool fits =
+      known.type == Type::f32 ? octahedral || is_float(found.type) : found.type == known.type;
+  if (!fits || found.decoded_components() != known.components) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("{}: channel {} is {} x {}, expected {} x {}; see formats/README.md",
                             reader_.path(), channel, formats::name_of(found.type), found.components,
-                            formats::name_of(type), components));
+                            formats::name_of(known.type), known.components));
   }
   return place;
 }
 
-std::size_t Dump::require(const char* channel, Type type, std::size_t components,
-                          std::string_view wanted_by, std::string_view instead) const {
-  const std::optional<std::size_t> place = find(channel, type, components);
+std::size_t Dump::require(std::string_view channel, std::string_view wanted_by,
+                          std::string_view instead) const {
+  const std::optional<std::size_t> place = find(channel);
   if (place) return *place;
   throw Error(ErrorCode::bad_input,
               fmt::format("{}: has no channel {}, which {} needs; render a dump that has it{}",
@@ -117,7 +119,7 @@ void Dump::require_angles() const {
     throw Error(ErrorCode::bad_input,
                 fmt::format("{}: {} has no angle per pixel, which a radius in pixels needs; write "
                             "\"angle_per_pixel\", in radians, into the metadata, or give the "
-                            "radius as a fraction of the distance, --r0 0.02",
+                            "radius as a fraction of the distance, `r0 0.02`",
                             reader_.path(), called(camera)));
   }
 }
@@ -125,40 +127,30 @@ void Dump::require_angles() const {
 ChannelSet Dump::select(const filter::Parameters& parameters, bool guides) const {
   ChannelSet set;
   constexpr std::string_view filter = "the filter";
-  set.position = require("position", Type::f32, 3, filter);
-  set.throughput = require("throughput", Type::f32, 3, filter);
-  set.contribution = require("contribution", Type::f32, 3, filter);
-  set.pixel = require("pixel", Type::u32, 1, filter);
+  set.position = require("position", filter);
+  set.throughput = require("throughput", filter);
+  set.contribution = require("contribution", filter);
+  set.pixel = require("pixel", filter);
   if (parameters.radius.basis != filter::RadiusBasis::world ||
       parameters.estimator == filter::Estimator::disk) {
-    set.distance = require("distance", Type::f32, 1, "a radius that depends on the distance");
+    set.distance = require("distance", "a radius that depends on the distance");
   }
   if (parameters.radius.basis == filter::RadiusBasis::footprint ||
       parameters.estimator == filter::Estimator::disk) {
     require_angles();
   }
-  set.flags = find("flags", Type::u8, 1);
-  set.unfiltered = find("unfiltered", Type::f32, 3);
-  set.camera = cameras_.size() > 1
-                   ? std::optional(require("camera", Type::u16, 1, "a dump of several cameras"))
-                   : find("camera", Type::u16, 1);
+  set.flags = find("flags");
+  set.unfiltered = find("unfiltered");
+  set.camera = cameras_.size() > 1 ? std::optional(require("camera", "a dump of several cameras"))
+                                   : find("camera");
   for (const filter::ChannelNeed& need : filter::optional_channels(parameters)) {
-    const auto set_needed = [&](std::optional<std::size_t>& place, const char* channel, Type type,
-                                std::size_t components) {
-      if (need.channel != channel) return;
-      place = require(channel, type, components, need.wanted_by, need.instead);
-    };
-    set_needed(set.normal, "normal", Type::f32, 3);
-    set_needed(set.reflectance, "reflectance", Type::f32, 3);
-    set_needed(set.visibility, "visibility", Type::u32, 1);
-    set_needed(set.hit_distance, "hit_distance", Type::f32, 1);
-    set_needed(set.direction, "direction", Type::f32, 3);
-    set_needed(set.material, "material", Type::u32, 1);
-    set_needed(set.roughness, "roughness", Type::f32, 1);
+    filter::for_each_channel([&](std::string_view name, const auto& member) {
+      if (name == need.channel) member(set) = require(need.channel, need.wanted_by, need.instead);
+    });
   }
   if (guides) {
-    set.normal = find("normal", Type::f32, 3);
-    set.reflectance = find("reflectance", Type::f32, 3);
+    set.normal = find("normal");
+    set.reflectance = find("reflectance");
   }
   return set;
 }
@@ -172,35 +164,19 @@ void Dump::read(const filter::PathRange& range, const ChannelSet& channels,
     if (column.capacity() < count) column = {};  // no old values beside the new ones
     column.resize(count);
   };
-  const auto floats = [&](std::optional<std::size_t> channel, auto& column) {
-    if (!channel) return column.clear();
-    tasks.push_back([this, &range, &column, &make_room, count, place = *channel] {
+  filter::for_each_channel([&](const char*, const auto& member) {
+    const std::optional<std::size_t> place = member(channels);
+    auto& column = member(out);
+    if (!place) return column.clear();
+    tasks.push_back([this, &range, &column, &make_room, count, place = *place] {
       make_room(column);
-      reader_.read_floats(place, range.first, count, as_floats(column));
+      if constexpr (std::is_integral_v<std::decay_t<decltype(column[0])>>) {
+        reader_.read(place, range.first, count, std::as_writable_bytes(std::span(column)));
+      } else {
+        reader_.read_floats(place, range.first, count, as_floats(column));
+      }
     });
-  };
-  const auto integers = [&](std::optional<std::size_t> channel, auto& column) {
-    if (!channel) return column.clear();
-    tasks.push_back([this, &range, &column, &make_room, count, place = *channel] {
-      make_room(column);
-      reader_.read(place, range.first, count, std::as_writable_bytes(std::span(column)));
-    });
-  };
-  floats(channels.position, out.position);
-  floats(channels.distance, out.distance);
-  floats(channels.throughput, out.throughput);
-  floats(channels.contribution, out.contribution);
-  floats(channels.unfiltered, out.unfiltered);
-  floats(channels.normal, out.normal);
-  floats(channels.reflectance, out.reflectance);
-  floats(channels.hit_distance, out.hit_distance);
-  floats(channels.direction, out.direction);
-  floats(channels.roughness, out.roughness);
-  integers(channels.flags, out.flags);
-  integers(channels.pixel, out.pixel);
-  integers(channels.camera, out.camera);
-  integers(channels.visibility, out.visibility);
-  integers(channels.material, out.material);
+  });
   core::parallel_for(tasks.size(), 1, [&](std::size_t begin, std::size_t) { tasks[begin](); });
   if (!channels.flags) out.flags.assign(count, filter::kHasVertex | filter::kShaded);
   check_pixels(range, out);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "filter/blocks.h"
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "formats/layout/metadata.h"
 #include "formats/read/reader.h"
 #include "run/block_records.h"
@@ -49,10 +49,9 @@ class Dump {
   void read(const filter::PathRange& range, const ChannelSet& channels, BlockRecords& out) const;
 
  private:
-  [[nodiscard]] std::optional<std::size_t> find(const char* channel, formats::Type type,
-                                                std::size_t components) const;
-  [[nodiscard]] std::size_t require(const char* channel, formats::Type type, std::size_t components,
-                                    std::string_view wanted_by,
+  // Channels of formats::kChannels, of their type.
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view channel) const;
+  [[nodiscard]] std::size_t require(std::string_view channel, std::string_view wanted_by,
                                     std::string_view instead = {}) const;
   void set_pass_bounds();
   void require_angles() const;

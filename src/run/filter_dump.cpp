@@ -27,7 +27,7 @@ void check_snapshots(const Dump& dump, const std::vector<std::uint64_t>& snapsho
                                               dump.reader().path(), snapshot, passes));
   }
   if (!std::is_sorted(snapshots.begin(), snapshots.end())) {
-    throw Error(ErrorCode::usage, "--snapshots: the numbers of passes must ascend");
+    throw Error(ErrorCode::usage, "`snapshots`: the numbers of passes must ascend");
   }
 }
 

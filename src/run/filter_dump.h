@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "filter/statistics.h"
 #include "run/dump.h"
 #include "run/memory.h"

@@ -9,7 +9,7 @@
 #include "core/parallel.h"
 #include "core/seconds.h"
 #include "filter/blocks.h"
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 #include "filter/radius.h"
 #include "run/block_reader.h"
 #include "run/many_adder.h"
@@ -76,8 +76,8 @@ class ManyRunner {
     const filter::Blocks blocks(run_.parameters.block, dump_.pass_bounds(), first_, last_);
     if (blocks.count() >= run_.parts) return;
     throw Error(ErrorCode::usage,
-                fmt::format("{}: --block {} makes {} of {} passes, so there are no {} parts to "
-                            "compare; give a smaller --block or a longer dump",
+                fmt::format("{}: `block {}` makes {} of {} passes, so there are no {} parts to "
+                            "compare; give a smaller `block` or a longer dump",
                             dump_.reader().path(), filter::to_text(run_.parameters.block),
                             blocks.count() == 1 ? "one block" : "too few blocks", last_ - first_,
                             run_.parts));

@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <fstream>
 #include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "filter/channels.h"
 #include "filter/memory.h"
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 
 namespace psf::run {
 namespace {
@@ -30,17 +34,13 @@ constexpr std::streamsize kLongestLine = 1 << 20;  // longest line of a file in 
 
 // The bytes per record in memory for the channels that are read; flags are always there.
 std::uint64_t record_bytes(const ChannelSet& set) {
-  constexpr std::uint64_t kVector = 12, kWord = 4, kHalf = 2;
-  std::uint64_t bytes = sizeof(std::uint8_t);
-  for (const auto* channel : {&set.position, &set.throughput, &set.contribution, &set.unfiltered,
-                              &set.normal, &set.reflectance, &set.direction}) {
-    if (*channel) bytes += kVector;
-  }
-  for (const auto* channel : {&set.distance, &set.pixel, &set.visibility, &set.hit_distance,
-                              &set.material, &set.roughness}) {
-    if (*channel) bytes += kWord;
-  }
-  return bytes + (set.camera ? kHalf : 0);
+  std::uint64_t bytes = 0;
+  filter::for_each_channel([&](std::string_view name, const auto& member) {
+    using Value =
+        typename std::decay_t<decltype(member(std::declval<BlockRecords&>()))>::value_type;
+    if (member(set) || name == "flags") bytes += sizeof(Value);
+  });
+  return bytes;
 }
 
 std::uint64_t longest_block(const BlockSize& size, const Dump& dump, std::size_t first,
@@ -131,12 +131,12 @@ class Planner {
   [[noreturn]] void refuse() const {
     const BlockSize& asked = r_.parameters.block;
     const std::string needed = fmt::format(
-        "{}: --block {} takes up to {}, and --max-memory allows {}", dump_.reader().path(),
+        "{}: `block {}` takes up to {}, and `max-memory` allows {}", dump_.reader().path(),
         filter::to_text(asked), in_mebibytes(estimate(asked, 1).total()), in_mebibytes(*r_.limit));
     const auto size = block_that_fits();
     if (size) {
       throw Error(ErrorCode::limit,
-                  fmt::format("{}; --block {} would fit, with {}", needed, filter::to_text(*size),
+                  fmt::format("{}; `block {}` would fit, with {}", needed, filter::to_text(*size),
                               in_mebibytes(estimate(*size, 1).total())));
     }
     const BlockSize smallest{BlockSize::Kind::power, 2, 0, 1};

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "run/dump.h"
 
 namespace psf::run {

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "filter/weights.h"
 #include "run/dump.h"
 

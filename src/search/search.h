@@ -28,9 +28,8 @@ class Search {
 };
 
 enum class Kind {
-  flann,  // FLANN over groups of points: the fast engine of filter/
-  plain,  // FLANN, one search per query
-  brute   // tests every point: the oracle
+  flann,
+  brute  // tests every point: the oracle
 };
 
 // `points` are copied; their coordinates must be finite. Throws Error{limit} above 2^31 - 1 points.

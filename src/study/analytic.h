@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/vec.h"
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "study/replicates.h"
 
 namespace psf::study {

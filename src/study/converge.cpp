@@ -27,7 +27,7 @@ void check_replicates(const std::vector<run::Dump>& dumps, std::uint64_t passes)
     const std::string& path = dump.reader().path();
     if (dump.pass_bounds().size() - 1 < passes) {
       throw Error(ErrorCode::usage,
-                  fmt::format("{}: has {} passes, {} are asked for; give --passes", path,
+                  fmt::format("{}: has {} passes, {} are asked for; give `passes`", path,
                               dump.pass_bounds().size() - 1, passes));
     }
     if (dump.metadata().cameras != first.metadata().cameras ||

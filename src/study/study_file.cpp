@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/json_text.h"
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 #include "formats/layout/crc.h"
 
 namespace psf::study {

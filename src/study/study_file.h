@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "metrics/metrics.h"
 #include "run/dump.h"
 #include "run/passes.h"

@@ -30,7 +30,7 @@ SweepFile::SweepFile(std::string folder, About about, bool resume) : folder_(std
   if (!std::filesystem::exists(path)) return;
   if (!resume) {
     throw Error(ErrorCode::usage,
-                path + ": is there already; give --resume to add to it, or another folder");
+                path + ": is there already; give `resume` to add to it, or another folder");
   }
   Json before = read_study_file(path, "sweep", "give another folder");
   const auto same = [&](const char* what, const Json& old, const Json& now) {

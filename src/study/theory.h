@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "run/dump.h"
 
 namespace psf::study {

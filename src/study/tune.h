@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "run/dump.h"
 #include "run/noise_share.h"
 #include "run/passes.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 
 namespace psf::study {
 namespace {

@@ -138,7 +138,7 @@ TEST_CASE("Refusals are those that the filter counts, alone ones what a term's a
   const run::Dump dump(folder / "a.pvb");
   FilterRequest run = default_run("all");
   run.parameters.weights = terms_of(255);
-  run.parameters.search = search::Kind::brute;
+  run.parameters.engine = filter::EngineKind::brute;
   run.parameters.count_refusals = true;
   const filter::Statistics all = run::filter_dump(dump, run).statistics;
   std::uint64_t candidates = 0;

@@ -20,7 +20,7 @@ std::vector<std::string> names_of(const std::vector<ExrLayer>& layers) {
 
 ExrLayer chosen(const std::vector<ExrPart>& parts, const std::string& name = "",
                 const std::string& fallback = "") {
-  return choose_layer("a.exr", exr_layers(parts), name, fallback, "--layer");
+  return choose_layer("a.exr", exr_layers(parts), name, fallback, "`layer`");
 }
 
 // What is said where none can be chosen, with the exit code in front.
@@ -83,11 +83,11 @@ TEST_CASE("where several layers would do they are listed") {
   const std::vector<ExrPart> two = {
       {"", {"beauty.B", "beauty.G", "beauty.R", "diffuse.B", "diffuse.G", "diffuse.R", "z.Y"}}};
   CHECK(refusal(two) ==
-        "2 a.exr: has several layers that would do; give --layer one of: beauty, diffuse");
+        "2 a.exr: has several layers that would do; give `layer` one of: beauty, diffuse");
   CHECK(chosen(two, "diffuse").name == "diffuse");
   CHECK(chosen(two, "", "diffuse").name == "diffuse");
   CHECK(refusal({{"", {"a.Y", "b.Y"}}}) ==
-        "2 a.exr: has several layers that would do; give --layer one of: a, b");
+        "2 a.exr: has several layers that would do; give `layer` one of: a, b");
   CHECK(refusal({{"", {"Z", "id.id"}}}) == "3 a.exr: has no channels R, G, B, nor Y");
   CHECK(refusal({{"", {"Z"}}}, "x") == "3 a.exr: has no layer x, nor any other");
 }

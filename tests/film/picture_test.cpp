@@ -119,7 +119,7 @@ TEST_CASE("a part of several is read by its name") {
   REQUIRE(picture.notes.size() == 1);
   CHECK(picture.notes[0] ==
         folder / "a.exr" + ": has no colours at its root, its layer rgba is taken");
-  CHECK(is_sample(read_picture(folder / "a.exr", {"rgba", "", "--layer"}), window));
+  CHECK(is_sample(read_picture(folder / "a.exr", {"rgba", "", "`layer`"}), window));
 }
 
 TEST_CASE("a part beside the wanted one may be what cannot be read") {
@@ -137,9 +137,9 @@ TEST_CASE("a part beside the wanted one may be what cannot be read") {
     output.setFrameBuffer(pixels.buffer);
     output.writePixels(6);
   }
-  CHECK(is_sample(read_picture(folder / "a.exr", {"flat", "", "--layer"}), window));
+  CHECK(is_sample(read_picture(folder / "a.exr", {"flat", "", "`layer`"}), window));
   try {
-    (void)read_picture(folder / "a.exr", {"deep", "", "--layer"});
+    (void)read_picture(folder / "a.exr", {"deep", "", "`layer`"});
     FAIL("was read");
   } catch (const psf::Error& error) {
     CHECK(std::string(error.what()).find("deep pixels") != std::string::npos);

@@ -236,14 +236,14 @@ TEST_CASE("Radii are those of the page, to the last record, by every search") {
   const Chosen right = by_the_page(set, 0.3f, 1);
   CHECK(right.near > 5);
   CHECK(run(set).radius == right.radius);
-  run.parameters.search = search::Kind::plain;
+  run.parameters.engine = filter::EngineKind::plain;
   CHECK(run(set).radius == right.radius);
 }
 
 // How many records another kind of search gives another radius.
 std::size_t different(const RecordSet& set, EstimatorRun run, const std::vector<float>& radius,
-                      search::Kind kind) {
-  run.parameters.search = kind;
+                      filter::EngineKind kind) {
+  run.parameters.engine = kind;
   const std::vector<float> found = run(set).radius;
   std::size_t count = 0;
   for (std::size_t i = 0; i < set.size(); ++i) count += found[i] != radius[i] ? 1u : 0u;
@@ -262,8 +262,8 @@ TEST_CASE("Contributions that are nearly equal give the same radii by every sear
       run.parameters.agree = 1;
       const std::vector<float> radius = run(set).radius;
       INFO(level << " (1 + [0, 2^-" << bits << "])");
-      CHECK(different(set, run, radius, search::Kind::plain) == 0);
-      CHECK(different(set, run, radius, search::Kind::brute) == 0);
+      CHECK(different(set, run, radius, filter::EngineKind::plain) == 0);
+      CHECK(different(set, run, radius, filter::EngineKind::brute) == 0);
     }
   }
 }
@@ -279,8 +279,8 @@ TEST_CASE("A nearly even half beside a noisy one gives the same radii by every s
     run.parameters.agree = 1;
     const std::vector<float> radius = run(set).radius;
     INFO("2^-" << bits);
-    CHECK(different(set, run, radius, search::Kind::plain) == 0);
-    CHECK(different(set, run, radius, search::Kind::brute) == 0);
+    CHECK(different(set, run, radius, filter::EngineKind::plain) == 0);
+    CHECK(different(set, run, radius, filter::EngineKind::brute) == 0);
   }
 }
 
@@ -293,9 +293,9 @@ TEST_CASE("Contributions in any unit give the same radii by every search") {
     RecordSet other = set;
     for (Rgb& c : other.contribution) c = Rgb(std::ldexp(c.x, unit));
     INFO("2^" << unit);
-    CHECK(different(other, run, radius, search::Kind::flann) == 0);
-    CHECK(different(other, run, radius, search::Kind::plain) == 0);
-    CHECK(different(other, run, radius, search::Kind::brute) == 0);
+    CHECK(different(other, run, radius, filter::EngineKind::flann) == 0);
+    CHECK(different(other, run, radius, filter::EngineKind::plain) == 0);
+    CHECK(different(other, run, radius, filter::EngineKind::brute) == 0);
   }
 }
 
@@ -306,7 +306,7 @@ TEST_CASE("Contributions of which floats cannot hold all squares give the same r
   }
   EstimatorRun run(Estimator::adaptive, 0.3);
   run.parameters.agree = 1;
-  CHECK(different(set, run, run(set).radius, search::Kind::brute) == 0);
+  CHECK(different(set, run, run(set).radius, filter::EngineKind::brute) == 0);
 }
 
 TEST_CASE("Every engine chooses the same radii") {
@@ -317,7 +317,7 @@ TEST_CASE("Every engine chooses the same radii") {
   EstimatorRun run(Estimator::adaptive, 0.2);
   run.parameters.agree = 2;
   const filter::Average fast = run(set);
-  run.parameters.search = search::Kind::plain;
+  run.parameters.engine = filter::EngineKind::plain;
   const filter::Average plain = run(set);
   CHECK(fast.neighbors == plain.neighbors);
   CHECK(fast.radius == plain.radius);

@@ -158,7 +158,7 @@ TEST_CASE("Brute force and FLANN give the same neighbours of every record") {
   filter::radii(c.parameters.radius, set.view(), block, radius);
   c.parameters.count_refusals = true;
   const filter::Average plain = filter::average(set.view(), radius, block, c.parameters);
-  c.parameters.search = search::Kind::brute;
+  c.parameters.engine = filter::EngineKind::brute;
   const filter::Average brute = filter::average(set.view(), radius, block, c.parameters);
   CHECK(plain.neighbors == brute.neighbors);
   CHECK(plain.statistics.candidates == brute.statistics.candidates);

@@ -3,10 +3,16 @@
 
 #include "catch.h"
 #include "core/error.h"
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 
 namespace psf {
 namespace {
+
+filter::BlockSize block_of(const std::string& text) {
+  filter::Parameters parameters;
+  filter::set_parameter(parameters, "block", text);
+  return parameters.block;
+}
 
 using filter::Blocks;
 using filter::PathRange;
@@ -14,7 +20,7 @@ using filter::PathRange;
 const std::vector<std::uint64_t> kBounds = {0, 100, 200, 250, 250, 1000};  // 5 passes, one empty
 
 std::vector<PathRange> blocks(const std::string& size, std::size_t first, std::size_t last) {
-  const Blocks all(filter::parse_block(size), kBounds, first, last);
+  const Blocks all(block_of(size), kBounds, first, last);
   std::vector<PathRange> list;
   for (std::uint64_t k = 0; k < all.count(); ++k) list.push_back(all[k]);
   return list;
@@ -47,12 +53,12 @@ TEST_CASE("Blocks of b^m are cut where they lie, blocks of passes counted from t
 
 TEST_CASE("Blocks past 2^32 paths are where they should be, and too large ones refused") {
   const std::uint64_t many = std::uint64_t{5} << 32;
-  const Blocks blocks(filter::parse_block("2^20"), {0, many, many + 3}, 0, 2);
+  const Blocks blocks(block_of("2^20"), {0, many, many + 3}, 0, 2);
   CHECK(blocks.count() == (many >> 20) + 1);
   CHECK(blocks[blocks.count() - 1] == PathRange{many, many + 3});
   CHECK(blocks[4096] == PathRange{std::uint64_t{1} << 32, (std::uint64_t{1} << 32) + (1 << 20)});
   for (const char* size : {"all", "1pass", "2^31", "3^63"}) {
-    CHECK_THROWS_AS(Blocks(filter::parse_block(size), {0, many}, 0, 1), Error);
+    CHECK_THROWS_AS(Blocks(block_of(size), {0, many}, 0, 1), Error);
   }
 }
 

@@ -52,7 +52,7 @@ EstimatorRun run_of(Estimator estimator, double r0, std::uint64_t realization) {
   run.cameras = kPlaneCamera;
   run.passes = kPasses;
   run.parameters.sources = kK;
-  run.parameters.search = search::Kind::brute;  // the fastest for so few
+  run.parameters.engine = filter::EngineKind::brute;  // the fastest for so few
   run.parameters.weights = filter::WeightTerms::none();
   run.first_path = realization * kPixels * kPasses;
   return run;

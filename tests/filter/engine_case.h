@@ -33,9 +33,9 @@ struct EngineCase {
     parameters.count_refusals = true;
   }
 
-  [[nodiscard]] filter::Average filtered(search::Kind kind) const {
+  [[nodiscard]] filter::Average filtered(filter::EngineKind kind) const {
     filter::Parameters chosen = parameters;
-    chosen.search = kind;
+    chosen.engine = kind;
     return filter::average(set.view(), radius, {0, 1, 1.5, cameras}, chosen);
   }
 };

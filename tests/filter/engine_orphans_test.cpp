@@ -8,7 +8,7 @@
 namespace psf {
 namespace {
 
-using search::Kind;
+using Kind = filter::EngineKind;
 using tests::EngineCase;
 
 // Contributions tell which sources were adopted. Returns how many orphans there were.

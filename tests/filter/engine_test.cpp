@@ -7,7 +7,7 @@
 namespace psf {
 namespace {
 
-using search::Kind;
+using Kind = filter::EngineKind;
 using tests::difference;
 using tests::EngineCase;
 

@@ -170,12 +170,12 @@ TEST_CASE("What an estimator cannot do is refused in one line that names the opt
     INFO(text);
     CHECK(text.rfind(with, 0) == 0);
   };
-  starts(message(Estimator::hash, [](Parameters& p) { p.weights.plane = 1.0f; }), "--plane:");
-  starts(message(Estimator::hash, [](Parameters& p) { p.iterations = 2; }), "--iterations:");
-  starts(message(Estimator::hash, [](Parameters& p) { p.count_refusals = true; }), "--refusals:");
-  starts(message(Estimator::control, [](Parameters& p) { p.iterations = 2; }), "--iterations:");
+  starts(message(Estimator::hash, [](Parameters& p) { p.weights.plane = 1.0f; }), "`plane`:");
+  starts(message(Estimator::hash, [](Parameters& p) { p.iterations = 2; }), "`iterations`:");
+  starts(message(Estimator::hash, [](Parameters& p) { p.count_refusals = true; }), "`refusals`:");
+  starts(message(Estimator::control, [](Parameters& p) { p.iterations = 2; }), "`iterations`:");
   starts(message(Estimator::control, [](Parameters& p) { p.count_refusals = true; }),
-         "--refusals:");
+         "`refusals`:");
   for (const Estimator estimator : kNew) CHECK(message(estimator, [](Parameters&) {}).empty());
 }
 

@@ -58,11 +58,11 @@ TEST_CASE("Every instruction set gives the same bytes") {
   const std::vector<std::string> sets = instruction_sets();
   REQUIRE_FALSE(sets.empty());
   for (const EngineCase& c : cases()) {
-    const filter::Average best = c.filtered(search::Kind::flann);
+    const filter::Average best = c.filtered(filter::EngineKind::flann);
     for (const std::string& set : sets) {
       const InstructionSetLimit limit(set);
       INFO(set << ", " << c.set.size() << " records");
-      CHECK(tests::difference(best, c.filtered(search::Kind::flann)) == "");
+      CHECK(tests::difference(best, c.filtered(filter::EngineKind::flann)) == "");
     }
   }
 }
@@ -111,7 +111,7 @@ TEST_CASE("Any number of threads gives the same bytes") {
     const EngineCase c = noisy_case(20'000, terms, 0.1f);
     const auto with_threads = [&](std::size_t threads) {
       const core::ThreadLimit limit(threads);
-      return c.filtered(search::Kind::flann);
+      return c.filtered(filter::EngineKind::flann);
     };
     const filter::Average one = with_threads(1);
     for (const std::size_t threads : {2u, 3u, 7u}) {

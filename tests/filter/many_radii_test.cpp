@@ -64,7 +64,7 @@ std::uint64_t check_radii(const EngineCase& c, const std::vector<Radius>& radii,
   for (std::size_t k = 0; k < radii.size(); ++k) {
     filter::Parameters separate = c.parameters;
     separate.radius = radii[k];
-    separate.search = search::Kind::plain;
+    separate.engine = filter::EngineKind::plain;
     separate.count_refusals = false;
     std::vector<float> radius;
     filter::radii(radii[k], c.set.view(), block, radius);
@@ -190,7 +190,7 @@ TEST_CASE("Many radii agree to rounding where sums are rounded") {
   for (std::size_t k = 0; k < radii.size(); ++k) {
     filter::Parameters separate = c.parameters;
     separate.count_refusals = false;
-    separate.search = search::Kind::brute;
+    separate.engine = filter::EngineKind::brute;
     separate.radius = radii[k];
     std::vector<float> radius;
     filter::radii(radii[k], c.set.view(), block, radius);

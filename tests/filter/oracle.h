@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "record_set.h"
 
 namespace psf::tests {

@@ -1,9 +1,12 @@
 // Parameters as text and their limits.
+#include <array>
 #include <limits>
+#include <map>
+#include <string>
 
 #include "catch.h"
 #include "core/error.h"
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 
 namespace psf {
 namespace {
@@ -13,51 +16,94 @@ using filter::Parameters;
 using filter::Radius;
 using filter::RadiusBasis;
 
+Parameters with(const char* name, const std::string& text) {
+  Parameters parameters;
+  filter::set_parameter(parameters, name, text);
+  return parameters;
+}
+
 TEST_CASE("A radius is read with its basis and written back") {
   for (const auto& [text, r0, basis] : {std::tuple{"0.02", 0.02, RadiusBasis::distance},
                                         std::tuple{"8px", 8.0, RadiusBasis::footprint},
                                         std::tuple{"0.5wu", 0.5, RadiusBasis::world},
                                         std::tuple{"1e-3wu", 1e-3, RadiusBasis::world},
                                         std::tuple{"0", 0.0, RadiusBasis::distance}}) {
-    Radius radius;
-    filter::parse_radius(text, radius);
+    const Radius radius = with("r0", text).radius;
     CHECK(radius.r0 == r0);
     CHECK(radius.basis == basis);
-    Radius again;
-    filter::parse_radius(filter::to_text(radius), again);
+    const Radius again = with("r0", filter::to_text(radius)).radius;
     CHECK(again.r0 == r0);
     CHECK(again.basis == basis);
   }
   Radius radius;
   for (const char* text : {"", "px", "8 px", "8pix", "-1", "nan", "0.02x", "wu", "0x2"}) {
     INFO(text);
-    CHECK_THROWS_AS(filter::parse_radius(text, radius), Error);
+    CHECK_THROWS_AS(with("r0", text), Error);
   }
 }
 
 TEST_CASE("A block is read and written back") {
   for (const char* text : {"2^16", "3^10", "1pass", "16passes", "all", "7^0"}) {
-    CHECK(filter::to_text(filter::parse_block(text)) == text);
+    CHECK(filter::to_text(with("block", text).block) == text);
   }
-  CHECK(filter::parse_block("16pass").passes == 16);
+  CHECK(with("block", "16pass").block.passes == 16);
   for (const char* text :
        {"", "2", "1^4", "2^", "^4", "2^64", "0passes", "passes", "-1pass", "All", "2^-1"}) {
     INFO(text);
-    CHECK_THROWS_AS(filter::parse_block(text), Error);
+    CHECK_THROWS_AS(with("block", text), Error);
   }
 }
 
 TEST_CASE("A share of sources and a threshold are read") {
-  CHECK(filter::parse_sources("1/4") == 4);
-  CHECK(filter::parse_sources("1") == 1);
+  CHECK(with("sources", "1/4").sources == 4);
+  CHECK(with("sources", "1").sources == 1);
   for (const char* text : {"", "4", "1/0", "2/3", "1/", "0.25"}) {
     INFO(text);
-    CHECK_THROWS_AS(filter::parse_sources(text), Error);
+    CHECK_THROWS_AS(with("sources", text), Error);
   }
-  CHECK(filter::parse_threshold("0.5", "--normal") == 0.5f);
-  CHECK_FALSE(filter::parse_threshold("off", "--normal").has_value());
-  CHECK_THROWS_WITH(filter::parse_threshold("on", "--normal"),
-                    "--normal: 'on' is neither a number nor off");
+  CHECK(with("normal", "0.5").weights.normal == 0.5f);
+  CHECK_FALSE(with("normal", "off").weights.normal.has_value());
+  CHECK_THROWS_WITH(with("normal", "on"), "`normal`: 'on' is neither a number nor off");
+}
+
+TEST_CASE("Every parameter is read from the text that it has, and says what else it may be") {
+  // Two values each; the second is no default.
+  const std::map<std::string, std::array<const char*, 2>> texts = {
+      {"r0", {"8px", "0.02"}},
+      {"delta", {"0", "0.25"}},
+      {"radius-count", {"samples", "blocks"}},
+      {"block", {"4passes", "2^16"}},
+      {"normal", {"0.95", "off"}},
+      {"reflectance", {"0.05", "off"}},
+      {"visibility", {"on", "off"}},
+      {"hit-distance", {"off", "0.1"}},
+      {"plane", {"off", "1"}},
+      {"direction", {"off", "0.5"}},
+      {"material", {"off", "on"}},
+      {"gloss", {"0.8", "off"}},
+      {"demodulate", {"off", "on"}},
+      {"iterations", {"1", "2"}},
+      {"sources", {"1/1", "1/4"}},
+      {"estimator", {"average", "adaptive"}},
+      {"agree", {"1.5", "2.5"}},
+      {"search", {"flann", "brute"}}};
+  REQUIRE(filter::parameter_table().size() == texts.size());
+  for (const filter::Parameter& parameter : filter::parameter_table()) {
+    INFO(parameter.name);
+    Parameters parameters;
+    parameters.estimator = filter::Estimator::adaptive;  // with it, every parameter means something
+    for (const char* text : texts.at(parameter.name)) {
+      parameter.set(parameters, text);
+      CHECK(parameter.text(parameters) == text);
+    }
+    CHECK(parameter.text(Parameters()) != texts.at(parameter.name)[1]);
+    CHECK_THROWS_WITH(
+        parameter.set(parameters, "x"),
+        Catch::Matchers::StartsWith(std::string("`") + parameter.name + "`: 'x' is "));
+  }
+  CHECK_THROWS_WITH(
+      with("radius", "8px"),
+      Catch::Matchers::StartsWith("there is no parameter 'radius'; there are r0, delta"));
 }
 
 TEST_CASE("Defaults are valid, what is out of range is refused") {
@@ -110,9 +156,9 @@ TEST_CASE("Channels are asked for by the parameters that use them") {
   const auto needs = filter::optional_channels(parameters);
   REQUIRE(needs.size() == 2);
   CHECK(needs[0].channel == "normal");
-  CHECK(needs[0].wanted_by == "--plane");
+  CHECK(needs[0].wanted_by == "`plane`");
   CHECK(needs[1].channel == "reflectance");
-  CHECK(needs[1].wanted_by == "--demodulate");
+  CHECK(needs[1].wanted_by == "`demodulate`");
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "filter/records.h"
 
 namespace psf::tests {

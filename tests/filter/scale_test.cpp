@@ -11,7 +11,7 @@ namespace psf {
 namespace {
 
 using filter::Estimator;
-using search::Kind;
+using Kind = filter::EngineKind;
 using tests::difference;
 using tests::EngineCase;
 using tests::RecordSet;

@@ -106,7 +106,7 @@ TEST_CASE("A term whose channel is missing is an error that names both") {
       set.direction,    set.material,    set.roughness};
   const filter::Block block{0, 1, 1, kWeightsCamera};
   CHECK_THROWS_WITH(filter::average(records, std::vector<float>(3, 1.0f), block, parameters),
-                    "the records have no channel visibility, which --visibility needs");
+                    "the records have no channel visibility, which `visibility` needs");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "catch.h"
 #include "core/error.h"
+#include "formats/layout/channels.h"
 
 using namespace psf;
 using namespace psf::render;
@@ -95,4 +96,16 @@ TEST_CASE("the picture gets u + alpha c, c only where there is a vertex, and no 
   film::Film thinned(3, 1);
   CHECK(recorder.add_to(thinned, 4, 4) == 0);
   CHECK(thinned.mean() == std::vector<float>{0, 0, 0, 2, 3, 4, 1, 0, 0});
+}
+
+TEST_CASE("the recorder's channels are those of the format, of their type") {
+  const std::vector<formats::Channel> channels = record_channels();
+  CHECK(channels.size() == formats::kChannels.size());
+  for (const formats::Channel& channel : channels) {
+    INFO(channel.name);
+    const formats::ChannelInfo* info = formats::channel_info(channel.name);
+    REQUIRE(info != nullptr);
+    CHECK(channel.type == info->type);
+    CHECK(channel.components == info->components);
+  }
 }

@@ -5,6 +5,8 @@
 
 #include "catch.h"
 #include "core/error.h"
+#include "filter/channels.h"
+#include "formats/layout/channels.h"
 #include "temp_folder.h"
 #include "write_dump.h"
 
@@ -107,12 +109,12 @@ TEST_CASE("A missing channel is named with the option that needs it") {
   };
   using Case = std::array<const char*, 3>;
   for (const auto& [channel, by, instead] :
-       {Case{"visibility", "--visibility", "give --visibility=off"},
-        Case{"hit_distance", "--hit-distance", "give --hit-distance off"},
-        Case{"normal", "--normal", "give --normal off"},
-        Case{"reflectance", "--reflectance", "give --reflectance off"},
-        Case{"direction", "--direction", "give --direction off"},
-        Case{"material", "--material", "leave --material out"}, Case{"position", "the filter", ""},
+       {Case{"visibility", "`visibility`", "give `visibility=off`"},
+        Case{"hit_distance", "`hit-distance`", "give `hit-distance off`"},
+        Case{"normal", "`normal`", "give `normal off`"},
+        Case{"reflectance", "`reflectance`", "give `reflectance off`"},
+        Case{"direction", "`direction`", "give `direction off`"},
+        Case{"material", "`material`", "leave `material` out"}, Case{"position", "the filter", ""},
         Case{"contribution", "the filter", ""}, Case{"throughput", "the filter", ""},
         Case{"pixel", "the filter", ""}, Case{"camera", "a dump of several cameras", ""},
         Case{"distance", "a radius that depends on the distance", ""}}) {
@@ -123,7 +125,7 @@ TEST_CASE("A missing channel is named with the option that needs it") {
   CHECK(message("normal", none) == "none");
   none.demodulate = true;
   CHECK(message("reflectance", none) ==
-        expected("reflectance", "--demodulate", "leave --demodulate out"));
+        expected("reflectance", "`demodulate`", "leave `demodulate` out"));
 }
 
 TEST_CASE("A pixel or a camera that does not exist is an error with the record's number") {
@@ -157,6 +159,21 @@ TEST_CASE("A dump without camera or with an impossible one is refused") {
   tests::write_dump(folder / "huge.pvb", set, {{{0xFFFFFFFF, 0xFFFFFFFF, 0.05}}, {200}, {}});
   CHECK_THROWS_AS(Dump(folder / "huge.pvb"), Error);
   CHECK_THROWS_AS(Dump(folder / "nowhere.pvb"), Error);
+}
+
+TEST_CASE("every channel of the format is one of the filter, and its values fit the type") {
+  std::size_t count = 0;
+  filter::for_each_channel([&](std::string_view name, const auto& member) {
+    INFO(name);
+    const formats::ChannelInfo* channel = formats::channel_info(name);
+    REQUIRE(channel != nullptr);
+    using Value =
+        typename std::decay_t<decltype(member(std::declval<BlockRecords&>()))>::value_type;
+    CHECK(sizeof(Value) == channel->components * formats::size_of(channel->type));
+    CHECK(std::is_integral_v<Value> == (channel->type != formats::Type::f32));
+    ++count;
+  });
+  CHECK(count == formats::kChannels.size());
 }
 
 }  // namespace

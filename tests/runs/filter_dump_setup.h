@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../filter/oracle.h"
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 #include "run/filter_dump.h"
 #include "temp_folder.h"
 #include "write_dump.h"
@@ -22,7 +22,7 @@ inline const std::vector<filter::CameraView> kTwo = {{16, 8, 0.05}, {8, 9, 0.1}}
 inline FilterRequest default_run(const std::string& block = "1pass") {
   FilterRequest run;
   run.parameters.radius = {0.25, filter::RadiusBasis::distance};
-  run.parameters.block = filter::parse_block(block);
+  filter::set_parameter(run.parameters, "block", block);
   return run;
 }
 

@@ -34,7 +34,7 @@ class Planned {
                                          std::optional<float> gloss = {}) const {
     filter::Parameters parameters;
     parameters.weights.gloss = gloss;
-    parameters.block = filter::parse_block(block);
+    filter::set_parameter(parameters, "block", block);
     return run::plan_memory(*dump_, dump_->select(parameters, true),
                             {parameters, 0, passes_, limit, kBytesAPixel});
   }
@@ -54,10 +54,10 @@ class Planned {
   [[nodiscard]] std::string suggested(const std::string& block, std::uint64_t most) const {
     const std::string text = refusal(block, most);
     INFO(text);
-    const std::string before = "; --block ", after = " would fit";
+    const std::string before = "; `block ", after = "` would fit";
     const std::size_t begin = text.find(before) + before.size(), end = text.find(after);
     REQUIRE(end != std::string::npos);
-    CHECK(text.starts_with("--block " + block + " takes up to "));
+    CHECK(text.starts_with("`block " + block + "` takes up to "));
     const std::string fits = text.substr(begin, end - begin);
     CHECK(plan(fits, most).total() <= most);
     return fits;

@@ -3,7 +3,7 @@
 
 #include "catch.h"
 #include "core/error.h"
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 #include "filter_dump_setup.h"
 
 namespace psf {
@@ -26,8 +26,8 @@ TEST_CASE("Terms without their channel are off, but for those that were asked fo
   std::vector<filter::Parameters> sets = {plain, all};
   CHECK(run::switch_off_missing(dump, sets, 0) ==
         folder / "a.pvb" +
-            ": has no channel normal, visibility, hit_distance, so --normal, "
-            "--visibility, --plane, --hit-distance are off");
+            ": has no channel normal, visibility, hit_distance, so `normal`, "
+            "`visibility`, `hit-distance`, `plane` are off");
   const filter::WeightTerms& few = sets[1].weights;
   CHECK_FALSE((few.normal || few.visibility || few.hit_distance || few.plane));
   CHECK((few.reflectance && few.direction && few.material));
@@ -62,7 +62,7 @@ TEST_CASE("What is no weight stays an error") {
   sets[0].weights.gloss.reset();
   sets[0].demodulate = true;
   CHECK(run::switch_off_missing(dump, sets, 0) ==
-        folder / "a.pvb" + ": has no channel reflectance, so --reflectance is off");
+        folder / "a.pvb" + ": has no channel reflectance, so `reflectance` is off");
   CHECK_THROWS_AS(dump.select(sets[0], false), Error);
 }
 

@@ -19,7 +19,7 @@ const std::vector<filter::CameraView> kSourceCamera = {{kSourceSide, kSourceSide
 FilterRequest run_with(std::uint32_t sources, filter::Estimator estimator) {
   FilterRequest run;
   run.parameters.radius = {0, filter::RadiusBasis::world};
-  run.parameters.block = filter::parse_block("all");
+  filter::set_parameter(run.parameters, "block", "all");
   run.parameters.weights = filter::WeightTerms::none();
   run.parameters.sources = sources;
   run.parameters.estimator = estimator;

@@ -262,7 +262,7 @@ TEST_CASE("One block alone has no parts to compare") {
     FAIL("was tuned");
   } catch (const Error& error) {
     CHECK(error.code() == ErrorCode::usage);
-    CHECK(std::string(error.what()).find("--block") != std::string::npos);
+    CHECK(std::string(error.what()).find("`block`") != std::string::npos);
   }
 }
 

@@ -17,7 +17,7 @@
 #include "core/json_text.h"
 #include "core/parallel.h"
 #include "core/progress.h"
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 #include "version.h"
 
 namespace psf::bench {

@@ -61,8 +61,9 @@ Row speed_row(const Sample& sample, const Reach& reach, std::size_t wanted, std:
   const core::ThreadLimit one(1);
   Run plain, flann;
   const Turns turns(
-      repeat, [&] { return (plain = run_filter(sample, reach, search::Kind::plain)).seconds; },
-      [&] { return (flann = run_filter(sample, reach, search::Kind::flann)).seconds; });
+      repeat,
+      [&] { return (plain = run_filter(sample, reach, filter::EngineKind::plain)).seconds; },
+      [&] { return (flann = run_filter(sample, reach, filter::EngineKind::flann)).seconds; });
   agreement.add(plain.average, flann.average);
   const Reach known{reach.r0, reach.neighbors, reach.in_ball, {}};
   const std::size_t runs = turns.first.size();
@@ -80,7 +81,7 @@ Row speed_row(const Sample& sample, const Reach& reach, std::size_t wanted, std:
 Row threads_row(const Sample& sample, const Reach& reach, std::size_t threads, std::size_t repeat) {
   const auto with = [&](std::size_t count) {
     const core::ThreadLimit limit(count);
-    return run_filter(sample, reach, search::Kind::flann).seconds;
+    return run_filter(sample, reach, filter::EngineKind::flann).seconds;
   };
   const Turns turns(
       repeat, [&] { return with(1); }, [&] { return with(threads); });

@@ -36,9 +36,9 @@ double first_r0(const Sample& sample) {
 
 }  // namespace
 
-Run run_filter(const Sample& sample, const Reach& reach, search::Kind kind) {
+Run run_filter(const Sample& sample, const Reach& reach, filter::EngineKind kind) {
   filter::Parameters parameters = sample.parameters;
-  parameters.search = kind;
+  parameters.engine = kind;
   Run run;
   run.seconds = seconds_of([&] {
     run.average =

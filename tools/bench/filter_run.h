@@ -24,7 +24,7 @@ struct Run {
   double seconds = 0;  // time of the call of filter::average(): index, search, weights and sums
 };
 
-[[nodiscard]] Run run_filter(const Sample& sample, const Reach& reach, search::Kind kind);
+[[nodiscard]] Run run_filter(const Sample& sample, const Reach& reach, filter::EngineKind kind);
 
 // The radius at which records have `neighbors` neighbours on average, within 2%; not set where no
 // radius gives so many. `start`: r0 to try first, 0 where none is known.

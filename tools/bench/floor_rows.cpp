@@ -80,7 +80,7 @@ Row floor_share_row(const Sample& sample, const Reach& reach, std::size_t repeat
   const core::ThreadLimit one(1);
   Floor floor(sample.parameters.weights);
   const Turns turns(
-      repeat, [&] { return run_filter(sample, reach, search::Kind::flann).seconds; },
+      repeat, [&] { return run_filter(sample, reach, filter::EngineKind::flann).seconds; },
       [&] { return seconds_on_floor(floor); });
   std::vector<double> shares;
   for (std::size_t k = 0; k < turns.first.size(); ++k) {
@@ -103,7 +103,7 @@ std::vector<Row> instruction_set_rows(const Sample& sample, const Reach& reach,
   const core::ThreadLimit one(1);
   return rows_of_sets("set", fmt::format("whole filter, {:.0f} neighbours", reach.neighbors),
                       repeat,
-                      [&] { return run_filter(sample, reach, search::Kind::flann).seconds; });
+                      [&] { return run_filter(sample, reach, filter::EngineKind::flann).seconds; });
 }
 
 }  // namespace psf::bench

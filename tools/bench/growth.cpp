@@ -28,7 +28,7 @@ std::optional<Point> growth_point(const Sample& sample, const char* series, std:
   const core::ThreadLimit one(1);
   std::vector<double> seconds;
   for (double total = 0; seconds.size() < repeat && total < kEnoughSeconds;) {
-    seconds.push_back(run_filter(sample, *reach, search::Kind::flann).seconds);
+    seconds.push_back(run_filter(sample, *reach, filter::EngineKind::flann).seconds);
     total += seconds.back();
   }
   reach->radius = {};

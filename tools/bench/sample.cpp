@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "filter/channels.h"
 #include "filter/inputs.h"
 
 namespace psf::bench {
@@ -49,14 +50,11 @@ Sample read_sample(const run::Dump& dump, std::size_t records) {
 }
 
 filter::Records part(const filter::Records& records, std::size_t first, std::size_t last) {
-  const auto cut = [&](const auto& column) {
-    return column.empty() ? column : column.subspan(first, last - first);
-  };
-  return {cut(records.flags),       cut(records.position),     cut(records.distance),
-          cut(records.throughput),  cut(records.contribution), cut(records.unfiltered),
-          cut(records.pixel),       cut(records.camera),       cut(records.normal),
-          cut(records.reflectance), cut(records.visibility),   cut(records.hit_distance),
-          cut(records.direction),   cut(records.material),     cut(records.roughness)};
+  filter::Records cut;
+  filter::for_each_channel([&](const char*, const auto& member) {
+    if (!member(records).empty()) member(cut) = member(records).subspan(first, last - first);
+  });
+  return cut;
 }
 
 }  // namespace psf::bench

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "run/block_records.h"
 #include "run/dump.h"
 

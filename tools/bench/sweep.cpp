@@ -14,7 +14,7 @@
 #include "cli.h"
 #include "core/json_text.h"
 #include "core/parallel.h"
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 #include "option_values.h"
 #include "run/filter_dump.h"
 #include "run/many_dump.h"
@@ -61,10 +61,10 @@ double largest_difference(const std::vector<Rgb>& a, const std::vector<Rgb>& b) 
 
 void add_rows(const run::Dump& dump, const std::string& r0, std::size_t repeat,
               std::vector<Row>& rows) {
-  filter::Radius largest;
-  filter::parse_radius(r0, largest);
+  filter::Parameters parameters;
+  filter::set_parameter(parameters, "r0", r0);
   run::ManyRequest many;
-  many.radii = pairs(largest);
+  many.radii = pairs(parameters.radius);
   run::FilterRequest one;
   one.parameters.radius = many.radii.front();
   const auto filter_many = [&] { return run::filter_many(dump, many); };

@@ -17,8 +17,9 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/standard_streams.h"
+#include "film/attributes.h"
 #include "film/image.h"
-#include "picture_names.h"
+#include "film/picture_names.h"
 #include "psf-render/options.h"
 #include "render/loop/render.h"
 #include "version.h"
@@ -56,22 +57,21 @@ film::Image make_image(const render::Scene& scene, const render::Camera& camera,
   // A pixel without shaded paths gets the mean of the shaded paths around it.
   image.add("", "RGB", settings.shade_rate > 1 ? film.filled_mean() : film.mean());
   const auto& i = settings.integrator;
-  image.attributes = {{"producer", settings.producer},
-                      {"scene", scene.name},
-                      {"sceneHash", scene.hash},
-                      {"camera", camera.name},
-                      {"integrator", i.name},
-                      {"maxDepth", fmt::format("{}", i.max_depth)},
-                      {"rouletteDepth", fmt::format("{}", i.roulette_depth)},
-                      {"split", fmt::format("{}", i.split)},
-                      {"sampler", render::to_string(settings.sampler.kind)},
-                      {"enumeration", render::to_string(settings.sampler.enumeration)},
-                      {"seed", fmt::format("{}", settings.sampler.seed)},
-                      {"shadeRate", fmt::format("1/{}", settings.shade_rate)},
-                      {"passes", fmt::format("{}", passes)}};
+  image.attributes = film::attributes_of(
+      kVersion, {scene.name, scene.hash, i.name, render::to_string(settings.sampler.kind),
+                 settings.sampler.seed});
+  const auto add = [&image](const char* name, const std::string& text) {
+    image.attributes.emplace_back(std::string("psf:") + name, text);
+  };
+  add("enumeration", render::to_string(settings.sampler.enumeration));
+  add("max-depth", fmt::format("{}", i.max_depth));
+  add("roulette-depth", fmt::format("{}", i.roulette_depth));
+  add("split", fmt::format("{}", i.split));
+  add("shade-rate", fmt::format("1/{}", settings.shade_rate));
   if (i.name == "ao" && std::isfinite(i.ao_distance)) {
-    image.attributes.emplace_back("aoDistance", fmt::format("{}", i.ao_distance));
+    add("ao-distance", fmt::format("{}", i.ao_distance));
   }
+  film::add_picture(image.attributes, camera.name, 0, passes);
   return image;
 }
 
@@ -131,7 +131,7 @@ void run(RenderOptions& options) {
   const auto cameras = render::chosen_cameras(scene, settings);
   std::vector<std::string> camera_names;
   for (const std::size_t camera : cameras) camera_names.push_back(scene.cameras[camera].name);
-  const PictureNames names(options.images, camera_names);
+  const film::PictureNames names(options.images, camera_names);
   check_all_files(options, scene.files, names.all({}));
   if (!options.output.empty()) {
     check_digits(options, scene);

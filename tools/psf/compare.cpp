@@ -142,9 +142,9 @@ void run(const CompareOptions& options) {
   check_bounds(options, report.first);
   check_outputs(options);
 
-  const film::Picture picture = film::read_picture(options.picture, {options.layer, "", "--layer"});
+  const film::Picture picture = film::read_picture(options.picture, {options.layer, "", "`layer`"});
   const film::Picture reference = film::read_picture(
-      options.reference, {options.reference_layer, options.layer, "--reference-layer"});
+      options.reference, {options.reference_layer, options.layer, "`reference-layer`"});
   const std::string note = film::check_comparable(picture, reference);
   std::vector<metrics::Choice> choices;
   for (const std::string& text : options.regions) {

@@ -259,8 +259,10 @@ void run(const ConvergeOptions& options, filter::TermSet asked) {
     return run_dumps(options, asked);
   }
   ParameterLists lists;
-  lists.r0 = options.lists.r0.empty() ? "12px" : options.lists.r0;
-  lists.delta = options.lists.delta.empty() ? "0.2,0.333333,0.5" : options.lists.delta;
+  lists.given = {{"r0", "12px"}, {"delta", "0.2,0.333333,0.5"}};
+  for (const char* name : {"r0", "delta"}) {
+    if (options.lists.given.contains(name)) lists.given[name] = options.lists.given.at(name);
+  }
   const std::vector<filter::Parameters> sets = all_sets(lists);
   bool passed = true;
   for (const auto scene : {study::AnalyticScene::smooth, study::AnalyticScene::edge}) {

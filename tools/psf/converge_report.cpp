@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 
 namespace psf::tools {
 namespace {

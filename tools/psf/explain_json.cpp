@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "explain_words.h"
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 #include "filter/weights.h"
 
 namespace psf::tools {

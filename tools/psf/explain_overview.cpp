@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "explain_words.h"
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 #include "search/ball.h"
 #include "text.h"
 

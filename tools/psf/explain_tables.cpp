@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "explain_words.h"
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 #include "filter/weights.h"
 #include "text.h"
 
@@ -15,13 +15,6 @@ namespace psf::tools {
 namespace {
 
 using explain::luminance;
-
-// What tells a source from the vertex it is averaged into, by term.
-constexpr std::array<const char*, filter::kTermCount> kApart = {
-    "another normal",        "another reflectance",
-    "other lights seen",     "",
-    "off the tangent plane", "",
-    "another material",      ""};
 
 // A remedy is worth a row if it refuses so much more of the leak than of the others, in shares.
 constexpr double kWorthARow = 0.1, kTells = 0.25;
@@ -99,7 +92,8 @@ class Tables {
   static std::string kind_text(std::uint32_t terms) {
     std::string text;
     for (std::size_t k = 0; k < filter::kTermCount; ++k) {
-      if (((terms >> k) & 1) != 0) text += (text.empty() ? "" : ", ") + std::string(kApart[k]);
+      if (((terms >> k) & 1) != 0)
+        text += (text.empty() ? "" : ", ") + std::string(filter::kTerms[k].apart);
     }
     return text.empty() ? "nothing" : text;
   }

@@ -17,12 +17,15 @@
 #include "core/progress.h"
 #include "core/seconds.h"
 #include "core/standard_streams.h"
+#include "film/image.h"
+#include "film/picture_names.h"
 #include "filter_options.h"
 #include "filter_report.h"
 #include "formats/write/appender.h"
 #include "notes.h"
 #include "pass_range.h"
-#include "picture_names.h"
+#include "run/attributes.h"
+#include "run/filter_dump.h"
 #include "tuned.h"
 #include "verbs.h"
 #include "version.h"
@@ -36,23 +39,6 @@ using core::seconds_since;
 constexpr std::chrono::milliseconds kBetweenLooks{200};
 constexpr double kPatience = 5;  // seconds without a writer before it is said
 
-std::vector<std::pair<std::string, std::string>> attributes_of(
-    const run::Dump& dump, const filter::Parameters& parameters) {
-  const formats::Metadata& metadata = dump.metadata();
-  std::vector<std::pair<std::string, std::string>> attributes = {
-      {"psf:version", kVersion},
-      {"psf:dump", std::filesystem::path(dump.reader().path()).filename().string()},
-      {"psf:dump-uuid", dump.reader().uuid()},
-      {"psf:scene", metadata.scene},
-      {"psf:scene-hash", metadata.scene_hash},
-      {"psf:integrator", metadata.integrator},
-      {"psf:sampler", metadata.sampler},
-      {"psf:seed", std::to_string(metadata.seed)}};
-  for (const auto& [name, value] : filter::describe(parameters))
-    attributes.emplace_back("psf:" + name, value);
-  return attributes;
-}
-
 std::vector<std::string> camera_names(const run::Dump& dump) {
   std::vector<std::string> names;
   for (const formats::CameraInfo& camera : dump.metadata().cameras) names.push_back(camera.name);
@@ -64,7 +50,7 @@ class PictureWriter {
  public:
   PictureWriter(const FilterOptions& options, const run::Dump& dump, const run::FilterRequest& run)
       : names_(options.outputs, camera_names(dump)),
-        attributes_(attributes_of(dump, run.parameters)),
+        attributes_(run::attributes_of(kVersion, dump, run.parameters)),
         cameras_(dump.metadata().cameras),
         first_(run.passes.first) {
     std::vector<std::string> files = names_.all(run.snapshots);
@@ -82,8 +68,7 @@ class PictureWriter {
     for (std::size_t camera = 0; camera < pictures.size(); ++camera) {
       film::Image image = pictures[camera].image();
       image.attributes = attributes_;
-      image.attributes.emplace_back("psf:camera", cameras_[camera].name);
-      image.attributes.emplace_back("psf:passes", fmt::format("{}:{}", first_, first_ + passes));
+      film::add_picture(image.attributes, cameras_[camera].name, first_, first_ + passes);
       for (std::size_t output = 0; output < names_.count(); ++output) {
         core::throw_if_interrupted("not all pictures were written");
         written.push_back(names_.path(output, camera, snapshot));
@@ -96,8 +81,8 @@ class PictureWriter {
   [[nodiscard]] double seconds() const { return seconds_; }
 
  private:
-  PictureNames names_;
-  std::vector<std::pair<std::string, std::string>> attributes_;
+  film::PictureNames names_;
+  film::Attributes attributes_;
   std::vector<formats::CameraInfo> cameras_;
   std::size_t first_;
   double seconds_ = 0;

@@ -11,62 +11,18 @@
 
 #include "core/error.h"
 #include "core/standard_streams.h"
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 #include "pass_range.h"
 #include "run/missing_terms.h"
 
 namespace psf::tools {
-namespace {
-
-filter::WeightTerms weights_of(const ParameterOptions& options) {
-  using filter::parse_threshold;
-  filter::WeightTerms terms =
-      options.no_weights ? filter::WeightTerms::none() : filter::WeightTerms();
-  const auto set = [](std::optional<float>& term, const std::string& text, const char* option) {
-    if (!text.empty()) term = parse_threshold(text, option);
-  };
-  set(terms.normal, options.normal, "--normal");
-  set(terms.reflectance, options.reflectance, "--reflectance");
-  set(terms.hit_distance, options.hit_distance, "--hit-distance");
-  set(terms.plane, options.plane, "--plane");
-  set(terms.direction, options.direction, "--direction");
-  set(terms.gloss, options.gloss, "--gloss");
-  terms.visibility = options.visibility.value_or(terms.visibility);
-  terms.material = options.material;
-  return terms;
-}
-
-void add_weights(CLI::App& command, ParameterOptions& options) {
-  const auto term = [&command](const char* name, std::string& text, const char* help) {
-    command.add_option(name, text, help)->type_name("T|off")->group("Weights");
-  };
-  term("--normal", options.normal, "n_i . n_j >= T (default 0.95)");
-  term("--reflectance", options.reflectance, "norm(rho_i - rho_j) <= T (default 0.05)");
-  term("--hit-distance", options.hit_distance,
-       "first hits differ by at most T of the longer (default off)");
-  term("--plane", options.plane, "at most T radii off the tangent plane (default off)");
-  term("--direction", options.direction,
-       "directions to the camera: omega_i . omega_j >= T (default off)");
-  term("--gloss", options.gloss,
-       "on glossy surfaces: norm(n_i - n_j, 10 (omega_i - omega_j)) <= T roughness_i^2 (default "
-       "0.8)");
-  command
-      .add_flag_function(
-          "--visibility", [&options](std::int64_t on) { options.visibility = on > 0; },
-          "the same lights are visible (default on; --visibility=off)")
-      ->group("Weights");
-  command.add_flag("--material", options.material, "the same material")->group("Weights");
-  command.add_flag("--no-weights", options.no_weights, "no terms but those given")
-      ->group("Weights");
-}
-
-}  // namespace
 
 filter::TermSet asked_terms(const CLI::App& command) {
   filter::TermSet asked = 0;
-  for (std::size_t k = 0; k < filter::kTermCount; ++k) {
-    const std::string name = std::string("--") + filter::kTermNames[k];
-    if (command.get_option(name)->count() > 0) asked |= filter::TermSet{1} << k;
+  for (const filter::Parameter& parameter : filter::parameter_table()) {
+    if (parameter.term && command.get_option(std::string("--") + parameter.name)->count() > 0) {
+      asked |= filter::bit(*parameter.term);
+    }
   }
   return asked;
 }
@@ -82,20 +38,11 @@ void fit_terms(const run::Dump& dump, std::span<filter::Parameters> sets, filter
 
 filter::Parameters parameters_of(const ParameterOptions& options) {
   filter::Parameters parameters;
-  if (!options.r0.empty()) filter::parse_radius(options.r0, parameters.radius);
-  parameters.radius.delta = options.delta;
-  parameters.radius.count =
-      options.radius_count == "blocks" ? filter::RadiusCount::blocks : filter::RadiusCount::samples;
-  if (!options.block.empty()) parameters.block = filter::parse_block(options.block);
-  parameters.weights = weights_of(options);
-  parameters.demodulate = options.demodulate;
-  parameters.iterations = options.iterations;
-  if (!options.sources.empty()) parameters.sources = filter::parse_sources(options.sources);
-  parameters.estimator = filter::parse_estimator(options.estimator);
-  parameters.agree = options.agree;
-  parameters.search = options.search == "brute"   ? search::Kind::brute
-                      : options.search == "plain" ? search::Kind::plain
-                                                  : search::Kind::flann;
+  if (options.no_weights) parameters.weights = filter::WeightTerms::none();
+  for (const filter::Parameter& parameter : filter::parameter_table()) {
+    const auto text = options.given.find(parameter.name);
+    if (text != options.given.end()) parameter.set(parameters, text->second);
+  }
   parameters.validate();
   return parameters;
 }
@@ -150,45 +97,24 @@ run::PictureLayers layers_of(const std::string& text) {
 }
 
 void add_parameter_options(CLI::App& command, ParameterOptions& options) {
-  command.add_option("--r0", options.r0, "radius: 8px, 0.02 of the distance, 0.5wu (default 8px)")
-      ->type_name("R");
-  command
-      .add_option("--delta", options.delta,
-                  "radius shrinks like n^(-delta/2); in [0, 1), 0 keeps it")
-      ->capture_default_str();
-  command.add_option("--radius-count", options.radius_count, "what n counts")
-      ->check(CLI::IsMember({"samples", "blocks"}))
-      ->capture_default_str();
-  command
-      .add_option("--block", options.block,
-                  "paths averaged with each other: 2^16, 16passes, all (default 4passes)")
-      ->type_name("B");
-  add_weights(command, options);
-  command.add_flag("--demodulate", options.demodulate,
-                   "average c / rho and multiply by rho: textures stay sharp");
-  command.add_option("--iterations", options.iterations, "filter so many times")
-      ->capture_default_str();
-  command.add_option("--sources", options.sources, "use only this share of the contributions")
-      ->type_name("1/K");
-  command
-      .add_option(
-          "--estimator", options.estimator,
-          "average; disk: photon mapping's; hash: cells of a jittered grid; control: halves "
-          "as control variates, unbiased; adaptive: balls whose contributions agree")
-      ->check(CLI::IsMember(filter::kEstimatorNames))
-      ->capture_default_str();
-  command
-      .add_option(
-          "--agree", options.agree,
-          "of --estimator adaptive: a ball grows while what is around it differs by at most "
-          "so many standard errors")
-      ->capture_default_str();
-  command
-      .add_option(
-          "--search", options.search,
-          "engine: flann; the same result from plain FLANN, a search a record, or by brute force")
-      ->check(CLI::IsMember({"flann", "plain", "brute"}))
-      ->capture_default_str();
+  for (const filter::Parameter& parameter : filter::parameter_table()) {
+    const std::string name = parameter.name, option = "--" + name;
+    const std::string help =
+        fmt::format("{} (default {})", parameter.help, parameter.text(filter::Parameters()));
+    CLI::Option* added = nullptr;
+    if (parameter.is_switch()) {
+      added = command.add_flag_function(
+          option,
+          [&options, name](std::int64_t on) { options.given[name] = on > 0 ? "on" : "off"; }, help);
+    } else {
+      added = command.add_option_function<std::string>(
+          option, [&options, name](const std::string& text) { options.given[name] = text; }, help);
+      added->type_name(parameter.type);
+    }
+    if (parameter.term) added->group("Weights");
+  }
+  command.add_flag("--no-weights", options.no_weights, "no terms but those given")
+      ->group("Weights");
 }
 
 void add_filter_options(CLI::App& command, FilterOptions& options) {

@@ -3,13 +3,14 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "cli.h"
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "filter/radius.h"
 #include "filter/weights.h"
 #include "run/dump.h"
@@ -17,16 +18,11 @@
 
 namespace psf::tools {
 
-// Every parameter of the filter except Parameters::count_refusals.
+// The parameters of the filter as written on the command line, by name, without those that are not
+// given.
 struct ParameterOptions {
-  // Text as written on the command line; empty: the default.
-  std::string r0, block, normal, reflectance, hit_distance, plane, direction, gloss, sources;
-  double delta = filter::Radius().delta, agree = filter::Parameters().agree;
-  std::optional<bool> visibility;
-  bool material = false, no_weights = false;
-  bool demodulate = false;
-  std::uint32_t iterations = 1;
-  std::string search = "flann", estimator = "average", radius_count = "samples";
+  std::map<std::string, std::string> given;
+  bool no_weights = false;  // switch off the terms that are not given
 };
 
 struct FilterOptions : ParameterOptions {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 #include "noise_report.h"
 #include "run/filter_dump.h"
 #include "text.h"

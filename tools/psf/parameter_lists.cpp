@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "filter/parameters/text.h"
 #include "filter_options.h"
 #include "option_values.h"
 
@@ -43,7 +44,7 @@ std::string number_text(double value) {
   return fmt::format("{:.5g}", value);
 }
 
-std::vector<std::string> range_values(const std::string& text, const char* option) {
+std::vector<std::string> range_values(const std::string& text, const std::string& option) {
   const auto refuse = [&](const char* why) {
     return Error(ErrorCode::usage, fmt::format("{}: '{}': {}; write A:B:xFACTOR or A:B:STEP, as in "
                                                "2px:32px:x2 or 0.1:0.5:0.1",
@@ -75,21 +76,9 @@ std::vector<std::string> range_values(const std::string& text, const char* optio
   }
 }
 
-bool parse_switch(const std::string& text, const char* option) {
-  if (text == "on" || text == "off") return text == "on";
-  throw Error(ErrorCode::usage, fmt::format("{}: '{}' is neither on nor off", option, text));
-}
-
-template <class T>
-T parse_value(const std::string& text, const char* option) {
-  const auto number = parse_number<T>(text);
-  if (number) return *number;
-  throw Error(ErrorCode::usage, fmt::format("{}: '{}' is no number", option, text));
-}
-
 }  // namespace
 
-std::vector<std::string> list_values(const std::string& text, const char* option) {
+std::vector<std::string> list_values(const std::string& text, const std::string& option) {
   std::vector<std::string> values;
   for (const std::string& item : split(text, ',')) {
     if (item.empty()) {
@@ -105,28 +94,17 @@ std::vector<std::string> list_values(const std::string& text, const char* option
 }
 
 void add_parameter_lists(CLI::App& command, ParameterLists& lists) {
-  const auto add = [&command](const char* name, std::string& text, const char* type,
-                              const char* help) {
-    command.add_option(name, text, help)->type_name(type)->group("Lists of parameters");
-  };
-  add("--r0", lists.r0, "LIST", "radii: 4px,8px or 2px:32px:x2 (default 8px)");
-  add("--delta", lists.delta, "LIST", "0,0.33 or 0.1:0.9:0.1 (default 0.333)");
-  add("--radius-count", lists.radius_count, "LIST", "of samples, blocks (default samples)");
-  add("--block", lists.block, "LIST", "1pass,4passes,2^16,all (default 4passes)");
-  add("--normal", lists.normal, "LIST", "thresholds and off: 0.9,0.95,off (default 0.95)");
-  add("--reflectance", lists.reflectance, "LIST", "thresholds and off (default 0.05)");
-  add("--visibility", lists.visibility, "LIST", "of on, off (default on)");
-  add("--hit-distance", lists.hit_distance, "LIST", "thresholds and off (default off)");
-  add("--plane", lists.plane, "LIST", "thresholds and off (default off)");
-  add("--direction", lists.direction, "LIST", "thresholds and off (default off)");
-  add("--gloss", lists.gloss, "LIST", "thresholds and off (default 0.8)");
-  add("--material", lists.material, "LIST", "of on, off (default off)");
-  add("--demodulate", lists.demodulate, "LIST", "of on, off (default off)");
-  add("--iterations", lists.iterations, "LIST", "1,2 (default 1)");
-  add("--sources", lists.sources, "LIST", "1/1,1/4 (default 1/1)");
-  add("--estimator", lists.estimator, "LIST",
-      "as of psf filter: average,disk,... (default average)");
-  add("--agree", lists.agree, "LIST", "standard errors, of the estimator adaptive");
+  for (const filter::Parameter& parameter : filter::parameter_table()) {
+    if (*parameter.examples == '\0') continue;  // there is no use in lists of it
+    const std::string name = parameter.name;
+    command
+        .add_option_function<std::string>(
+            "--" + name, [&lists, name](const std::string& text) { lists.given[name] = text; },
+            fmt::format("{} (default {})", parameter.examples,
+                        parameter.text(filter::Parameters())))
+        ->type_name("LIST")
+        ->group("Lists of parameters");
+  }
   command.add_flag("--no-weights", lists.no_weights, "no terms but those given")
       ->group("Lists of parameters");
 }
@@ -134,62 +112,31 @@ void add_parameter_lists(CLI::App& command, ParameterLists& lists) {
 std::vector<filter::Parameters> all_sets(const ParameterLists& lists) {
   std::vector<ParameterOptions> sets(1);
   sets[0].no_weights = lists.no_weights;
-  // Every set with every value of the list.
-  const auto multiply = [&sets](const std::string& list, const char* option, const auto& assign) {
-    if (list.empty()) return;
-    const std::vector<std::string> values = list_values(list, option);
+  // Every set with every value of the parameter's list.
+  const auto multiply = [&](const std::string& name) {
+    const auto list = lists.given.find(name);
+    if (list == lists.given.end() || list->second.empty()) return;
+    const std::vector<std::string> values = list_values(list->second, "--" + name);
     if (sets.size() * values.size() > kMostSets) {
-      throw Error(ErrorCode::usage, fmt::format("{}: more than {} combinations; shorten the lists",
-                                                option, kMostSets));
+      throw Error(
+          ErrorCode::usage,
+          fmt::format("--{}: more than {} combinations; shorten the lists", name, kMostSets));
     }
     std::vector<ParameterOptions> product;
     for (const ParameterOptions& set : sets) {
       for (const std::string& value : values) {
         product.push_back(set);
-        assign(product.back(), value);
+        product.back().given[name] = value;
       }
     }
     sets = std::move(product);
   };
-  const auto text_of = [](std::string ParameterOptions::*member) {
-    return [member](ParameterOptions& set, const std::string& value) { set.*member = value; };
-  };
-  using Options = ParameterOptions;
-  multiply(lists.estimator, "--estimator", text_of(&Options::estimator));
-  multiply(lists.agree, "--agree", [](Options& set, const std::string& value) {
-    set.agree = parse_value<decltype(set.agree)>(value, "--agree");
-  });
-  multiply(lists.block, "--block", text_of(&Options::block));
-  multiply(lists.radius_count, "--radius-count", [](Options& set, const std::string& value) {
-    if (value != "samples" && value != "blocks") {
-      throw Error(ErrorCode::usage,
-                  fmt::format("--radius-count: '{}' is neither samples nor blocks", value));
-    }
-    set.radius_count = value;
-  });
-  multiply(lists.normal, "--normal", text_of(&Options::normal));
-  multiply(lists.reflectance, "--reflectance", text_of(&Options::reflectance));
-  multiply(lists.visibility, "--visibility", [](Options& set, const std::string& value) {
-    set.visibility = parse_switch(value, "--visibility");
-  });
-  multiply(lists.hit_distance, "--hit-distance", text_of(&Options::hit_distance));
-  multiply(lists.plane, "--plane", text_of(&Options::plane));
-  multiply(lists.direction, "--direction", text_of(&Options::direction));
-  multiply(lists.gloss, "--gloss", text_of(&Options::gloss));
-  multiply(lists.material, "--material", [](Options& set, const std::string& value) {
-    set.material = parse_switch(value, "--material");
-  });
-  multiply(lists.demodulate, "--demodulate", [](Options& set, const std::string& value) {
-    set.demodulate = parse_switch(value, "--demodulate");
-  });
-  multiply(lists.iterations, "--iterations", [](Options& set, const std::string& value) {
-    set.iterations = parse_value<std::uint32_t>(value, "--iterations");
-  });
-  multiply(lists.sources, "--sources", text_of(&Options::sources));
-  multiply(lists.r0, "--r0", text_of(&Options::r0));
-  multiply(lists.delta, "--delta", [](Options& set, const std::string& value) {
-    set.delta = parse_value<double>(value, "--delta");
-  });
+  for (const filter::Parameter& parameter : filter::parameter_table()) {
+    const std::string name = parameter.name;
+    if (name != "r0" && name != "delta") multiply(name);
+  }
+  multiply("r0");
+  multiply("delta");
   std::vector<filter::Parameters> parameters;
   parameters.reserve(sets.size());
   for (const ParameterOptions& set : sets) parameters.push_back(parameters_of(set));

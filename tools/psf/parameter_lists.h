@@ -2,19 +2,19 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 
 namespace psf::tools {
 
-// Lists as written: "2px,4px", "2px:32px:x2", "0.1:0.5:0.1", "0.9,off". Empty: only the default.
+// Lists as written: "2px,4px", "2px:32px:x2", "0.1:0.5:0.1", "0.9,off". Where there is none: only the default.
 struct ParameterLists {
-  std::string r0, delta, radius_count, block, normal, reflectance, visibility, hit_distance, plane,
-      direction, gloss, material, demodulate, iterations, sources, estimator, agree;
-  bool no_weights = false;  // switch off the terms that are not given
+  std::map<std::string, std::string> given;  // by the name of the parameter
+  bool no_weights = false;                   // switch off the terms that are not given
 };
 
 void add_parameter_lists(CLI::App& command, ParameterLists& lists);
@@ -26,6 +26,7 @@ inline constexpr std::size_t kMostSets = 100000;
 
 // The values of one list. A range A:B:xF goes from A up to B by factors of F, A:B:S by steps of S.
 // A unit behind B is that of A and S too.
-[[nodiscard]] std::vector<std::string> list_values(const std::string& text, const char* option);
+[[nodiscard]] std::vector<std::string> list_values(const std::string& text,
+                                                   const std::string& option);
 
 }  // namespace psf::tools

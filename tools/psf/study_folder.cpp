@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "film/image.h"
 #include "film/picture.h"
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 #include "notes.h"
 #include "pass_range.h"
 #include "version.h"
@@ -67,7 +67,7 @@ StudyFolder::StudyFolder(const StudyOptions& options, const run::Dump& dump,
       camera_(find_camera(dump, options.camera)) {
   options_.metrics.validate();
   film::Picture image =
-      film::read_picture(options_.reference, {options_.reference_layer, "", "--reference-layer"});
+      film::read_picture(options_.reference, {options_.reference_layer, "", "`reference-layer`"});
   const filter::CameraView& view = dump.cameras()[camera_];
   if (image.width != view.width || image.height != view.height) {
     throw Error(ErrorCode::bad_input,

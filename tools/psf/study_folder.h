@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/vec.h"
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "metrics/metrics.h"
 #include "run/dump.h"
 #include "run/passes.h"

@@ -14,7 +14,7 @@
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
-#include "filter/parameters_text.h"
+#include "filter/parameters/text.h"
 #include "filter_options.h"
 #include "noise_report.h"
 #include "notes.h"
@@ -126,7 +126,7 @@ void run(const TuneOptions& options, filter::TermSet asked) {
   keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
   ParameterLists lists = options.lists;
-  if (lists.r0.empty()) lists.r0 = kRadii;
+  lists.given.try_emplace("r0", kRadii);
   std::vector<filter::Parameters> sets = all_sets(lists);
   const run::Dump dump(options.input);
   std::vector<std::string> notes;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "filter/records.h"
 
 namespace psf::filter::engine {

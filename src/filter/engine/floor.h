@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 
 namespace psf::filter::engine {
 

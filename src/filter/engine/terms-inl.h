@@ -198,16 +198,15 @@ struct Gloss {
 };
 
 // The terms that are on, with the values of the queries in kLanes lanes of a packet, from `lane`
-// on. Term k has bit k, in the order of kTermNames.
+// on.
 class Terms {
  public:
   Terms(const ColumnPlan& plan, const WeightTerms& on, const Packet& packet, std::size_t lane)
       : plan_(plan), on_(on), packet_(packet), lane_(lane) {
-    const bool by[kTermCount] = {on.normal.has_value(), on.reflectance.has_value(),
-                                 on.visibility,         on.hit_distance.has_value(),
-                                 on.plane.has_value(),  on.direction.has_value(),
-                                 on.material,           on.gloss.has_value()};
-    for (std::size_t k = 0; k < kTermCount; ++k) bits_ |= std::uint32_t{by[k]} << k;
+    for (std::size_t k = 0; k < kTermCount; ++k) {
+      const auto term = static_cast<Term>(k);
+      if (on.on(term)) bits_ |= bit(term);
+    }
   }
 
   [[nodiscard]] HWY_INLINE std::uint32_t bits() const { return bits_; }
@@ -231,28 +230,33 @@ class Terms {
     const V reach = hn::Load(kD, packet_.plane_reach + lane_);
     return {n, distance(0), column(n), column(n + 1), column(n + 2), reach};
   }
-  // Calls visit(k, term, c) for each term k of `bits`; c is the column at which the source begins
+  // Calls visit(k, term, c) for each term of `bits`, k its value; c is the column at which the source begins
   // that `pass` takes.
   template <class Visit>
   HWY_INLINE void each(std::uint32_t bits, const Visit& visit) const {
-    const auto wants = [bits](std::size_t k) { return (bits >> k & 1) != 0; };
-    if (wants(0)) visit(std::size_t{0}, cosine(*plan_.normal, *on_.normal), *plan_.normal);
-    if (wants(1)) {
+    const auto wants = [bits](Term term) { return (bits & bit(term)) != 0; };
+    const auto give = [&visit](Term term, const auto& value, std::size_t c) {
+      visit(static_cast<std::size_t>(term), value, c);
+    };
+    if (wants(Term::normal)) give(Term::normal, cosine(*plan_.normal, *on_.normal), *plan_.normal);
+    if (wants(Term::reflectance)) {
       const std::size_t c = *plan_.reflectance;
       const float t = *on_.reflectance;
-      visit(std::size_t{1}, Reflectance{c, distance(c), hn::Set(kD, t * t)}, c);
+      give(Term::reflectance, Reflectance{c, distance(c), hn::Set(kD, t * t)}, c);
     }
-    if (wants(2)) visit(std::size_t{2}, equal(*plan_.visibility), *plan_.visibility);
-    if (wants(3)) {
+    if (wants(Term::visibility)) {
+      give(Term::visibility, equal(*plan_.visibility), *plan_.visibility);
+    }
+    if (wants(Term::hit_distance)) {
       const std::size_t c = *plan_.hit_distance;
-      visit(std::size_t{3}, HitDistance{c, column(c), hn::Set(kD, *on_.hit_distance)}, c);
+      give(Term::hit_distance, HitDistance{c, column(c), hn::Set(kD, *on_.hit_distance)}, c);
     }
-    if (wants(4)) visit(std::size_t{4}, plane(), std::size_t{0});
-    if (wants(5)) {
-      visit(std::size_t{5}, cosine(*plan_.direction, *on_.direction), *plan_.direction);
+    if (wants(Term::plane)) give(Term::plane, plane(), 0);
+    if (wants(Term::direction)) {
+      give(Term::direction, cosine(*plan_.direction, *on_.direction), *plan_.direction);
     }
-    if (wants(6)) visit(std::size_t{6}, equal(*plan_.material), *plan_.material);
-    if (wants(7)) visit(std::size_t{7}, gloss(), std::size_t{0});
+    if (wants(Term::material)) give(Term::material, equal(*plan_.material), *plan_.material);
+    if (wants(Term::gloss)) give(Term::gloss, gloss(), 0);
   }
 
  private:

@@ -76,12 +76,11 @@ bool in_one_traversal(const Problem& problem, std::span<const Rgb> values, doubl
 // The same as anyone would write it first: a search for the largest ball of each query.
 class Plain {
  public:
-  Plain(search::Kind kind, const Problem& problem, std::span<const Rgb> values, double agree)
+  Plain(EngineKind kind, const Problem& problem, std::span<const Rgb> values, double agree)
       : p_(problem), values_(values), agree_(agree), shares_(shares_of_radius()) {
     std::vector<Vec3> positions;
     for (const std::uint32_t j : p_.roles.sources) positions.push_back(p_.records.position[j]);
-    search_ =
-        search::make_search(kind == search::Kind::flann ? search::Kind::plain : kind, positions);
+    search_ = search::make_search(search_of(kind), positions);
   }
 
   void set_radii(std::span<float> out) const {
@@ -130,10 +129,10 @@ class Plain {
 
 }  // namespace
 
-std::vector<float> adaptive_radii(search::Kind kind, const Problem& problem,
+std::vector<float> adaptive_radii(EngineKind kind, const Problem& problem,
                                   std::span<const Rgb> values, double agree) {
   std::vector<float> radii(problem.records.size(), 0.0f);
-  if (kind != search::Kind::flann || !in_one_traversal(problem, values, agree, radii)) {
+  if (kind != EngineKind::flann || !in_one_traversal(problem, values, agree, radii)) {
     Plain(kind, problem, values, agree).set_radii(radii);
   }
   return radii;

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "filter/parameters.h"
+#include "filter/parameters/parameters.h"
 #include "filter/problem.h"
 
 namespace psf::filter {
@@ -17,7 +17,7 @@ inline constexpr double kAdaptiveLeastShare = 1.0 / 16;  // no radius is below t
 // problem.radius holds the largest radius of each query, `values` the sources' values that are
 // averaged, by record number. The result is the same for any number of threads and any `kind`.
 // Throws Error{interrupted} on ^C.
-[[nodiscard]] std::vector<float> adaptive_radii(search::Kind kind, const Problem& problem,
+[[nodiscard]] std::vector<float> adaptive_radii(EngineKind kind, const Problem& problem,
                                                 std::span<const Rgb> values, double agree);
 
 }  // namespace psf::filter

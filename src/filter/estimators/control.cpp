@@ -134,7 +134,7 @@ class Control {
     if (roles.sources.empty()) return;
     const Weights weights(r_, terms_in_use(r_, p_.weights));
     const Problem problem{r_, roles, radius_, weights, {}};
-    const std::unique_ptr<Engine> engine = make_engine(p_.search, problem);
+    const std::unique_ptr<Engine> engine = make_engine(p_.engine, problem);
     result_.statistics.seconds_index += seconds_since(start);
     const double share = noise_share();
 
@@ -192,8 +192,8 @@ std::uint32_t shade_rate(std::uint64_t queries, std::uint64_t shaded) {
   if (std::abs(ratio / k - 1) <= tolerance) return static_cast<std::uint32_t>(k);
   throw Error(
       ErrorCode::bad_input,
-      fmt::format("--estimator control: one record in {:.3g} is shaded, but the probability "
-                  "must be one over a whole number; render with one --shade-rate",
+      fmt::format("`estimator control`: one record in {:.3g} is shaded, but the probability "
+                  "must be one over a whole number; render with one shade rate",
                   ratio));
 }
 

@@ -23,7 +23,7 @@ struct Grid {
 
 class HashEngine final : public Engine {
  public:
-  HashEngine(search::Kind kind, const Problem& problem, double scale, std::uint64_t first_path)
+  HashEngine(EngineKind kind, const Problem& problem, double scale, std::uint64_t first_path)
       : p_(problem),
         kind_(kind),
         keys_(problem.records, problem.weights.terms(), scale, first_path) {
@@ -120,8 +120,7 @@ class HashEngine final : public Engine {
     if (orphans.empty()) return;
     std::vector<Vec3> positions;
     for (const std::uint32_t j : p_.roles.sources) positions.push_back(p_.records.position[j]);
-    const auto search =
-        search::make_search(kind_ == search::Kind::flann ? search::Kind::plain : kind_, positions);
+    const auto search = search::make_search(search_of(kind_), positions);
     std::vector<Statistics> parts(core::range_count(orphans.size(), kCellGrain));
     core::parallel_for(orphans.size(), kCellGrain, [&](std::size_t begin, std::size_t end) {
       core::throw_if_interrupted("no picture was written");
@@ -133,7 +132,7 @@ class HashEngine final : public Engine {
   }
 
   const Problem& p_;
-  search::Kind kind_;
+  EngineKind kind_;
   KeyMaker keys_;
   Grid grid_;                         // the cells of all queries
   std::vector<std::uint32_t> alone_;  // queries with r_i = 0
@@ -141,7 +140,7 @@ class HashEngine final : public Engine {
 
 }  // namespace
 
-std::unique_ptr<Engine> make_hash(search::Kind kind, const Problem& problem, double scale,
+std::unique_ptr<Engine> make_hash(EngineKind kind, const Problem& problem, double scale,
                                   std::uint64_t first_path) {
   return std::make_unique<HashEngine>(kind, problem, scale, first_path);
 }

@@ -11,7 +11,7 @@ namespace psf::filter {
 // README.md says what differs. `scale`: [radius] without f_i, > 0. `first_path`: path number of
 // record 0. `problem` must outlive the engine. Its average() cannot count refusals, because there
 // is no ball.
-[[nodiscard]] std::unique_ptr<Engine> make_hash(search::Kind kind, const Problem& problem,
+[[nodiscard]] std::unique_ptr<Engine> make_hash(EngineKind kind, const Problem& problem,
                                                 double scale, std::uint64_t first_path);
 
 }  // namespace psf::filter

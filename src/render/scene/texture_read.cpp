@@ -246,8 +246,9 @@ png_error_ptr said = nullptr;  // the error handler that was set last
 }  // namespace
 
 // In place of libpng's: OpenImageIO's function for errors returns, and then libpng prints them.
-extern "C" void png_set_error_fn(png_structrp png, png_voidp pointer, png_error_ptr error,
-                                 png_error_ptr warning) {
+extern "C" [[gnu::visibility("default")]] void png_set_error_fn(png_structrp png, png_voidp pointer,
+                                                                png_error_ptr error,
+                                                                png_error_ptr warning) {
   static auto* const set = reinterpret_cast<decltype(&png_set_error_fn)>(
       ::dlsym(RTLD_NEXT, "png_set_error_fn"));  // NOLINT: so POSIX has it
   if (error != nullptr) said = error;

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "search/search.h"
+#include "filter/parameters/terms.h"
 
 namespace psf::filter {
 
@@ -44,22 +44,6 @@ struct BlockSize {
   std::uint64_t passes = 4;               // passes: this many, >= 1; measured in README.md
 };
 
-// The terms of w_ij; a threshold that is not set switches its term off.
-struct WeightTerms {
-  std::optional<float> normal = 0.95f;       // n_i . n_j >= t, t in [-1, 1]
-  std::optional<float> reflectance = 0.05f;  // norm(rho_i - rho_j) <= t, t >= 0
-  bool visibility = true;                    // equal visibility bits
-  std::optional<float> hit_distance;         // relative difference <= t, t >= 0
-  std::optional<float> plane;                // abs((x_j - x_i) . n_i) <= t r_i, t >= 0
-  std::optional<float> direction;            // omega_i . omega_j >= t, t in [-1, 1]
-  bool material = false;                     // equal material ids
-  std::optional<float> gloss = 0.8f;         // gloss_term() of weights.h, t > 0
-
-  [[nodiscard]] static WeightTerms none();
-  // Switches a term off, given its number in kTermNames (weights.h).
-  void switch_off(std::size_t term);
-};
-
 enum class Estimator : std::uint8_t {
   average,  // [average]
   disk,     // [disk], as in photon mapping: the sum over the area of the ball's disk
@@ -69,6 +53,13 @@ enum class Estimator : std::uint8_t {
 };
 inline constexpr std::array<const char*, 5> kEstimatorNames = {"average", "disk", "hash", "control",
                                                                "adaptive"};
+
+// What finds the neighbours; the result is the same.
+enum class EngineKind : std::uint8_t {
+  flann,  // engine/: FLANN over groups of records
+  plain,  // FLANN, one search a record
+  brute   // tests every pair: the oracle
+};
 
 struct Parameters {
   Radius radius;
@@ -81,17 +72,19 @@ struct Parameters {
   // For [adaptive], > 0: a ball grows until the mean of the ring around it differs from its own by
   // more than this many standard errors; measured in README.md.
   double agree = 1.5;
-  search::Kind search = search::Kind::flann;
+  EngineKind engine = EngineKind::flann;
   bool count_refusals = false;  // pairs in the balls and refusals by term; about doubles the time
 
   // Throws Error{usage} naming the parameter and what it may be.
   void validate() const;
 };
 
-// A channel that parameters need, the option that needs it, and how to do without the channel:
-// {"normal", "--normal", "give --normal off"}.
+// A channel that parameters need, the parameter that needs it, and how to do without the channel:
+// {"normal", "`normal`", "give `normal off`", Term::normal}.
 struct ChannelNeed {
-  std::string_view channel, wanted_by, instead;
+  std::string_view channel;
+  std::string wanted_by, instead;
+  std::optional<Term> term = {};
 };
 // The channels that `parameters` need in addition to `position`, `throughput`, `contribution`,
 // `distance` and `pixel`, which every dump has.

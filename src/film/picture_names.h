@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace psf::tools {
+namespace psf::film {
 
 // Makes file names from the given names, the camera's name where there are several cameras, and the
 // number of passes of a snapshot.
@@ -58,4 +58,4 @@ class PictureNames {
   std::vector<std::string> names_, cameras_;
 };
 
-}  // namespace psf::tools
+}  // namespace psf::film

@@ -1,0 +1,47 @@
+// Every parameter as text, both ways, in one table: options, tuned files, attributes of pictures,
+// reports and other languages are loops over it.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "filter/parameters/parameters.h"
+
+namespace psf::filter {
+
+// A parameter and its text.
+struct Parameter {
+  const char* name;      // "r0", "hit-distance"
+  const char* type;      // what its text looks like: "R", "T|off", "on|off", "average|disk|..."
+  const char* help;      // what it does, a line
+  const char* examples;  // values of it, for lists: "4px,8px"
+  std::optional<Term> term;
+  std::string (*text)(const Parameters&);
+  // Throws Error{usage} that names the parameter and says what may be written. Whether the values of
+  // all parameters go together is for Parameters::validate().
+  void (*set)(Parameters&, const std::string& text);
+
+  [[nodiscard]] bool is_switch() const { return std::string_view(type) == "on|off"; }
+};
+
+// In the order of Parameters. count_refusals is not among them: it changes no picture.
+[[nodiscard]] std::span<const Parameter> parameter_table();
+// Throws Error{usage} that lists the names where there is none of this name.
+[[nodiscard]] const Parameter& find_parameter(std::string_view name);
+
+// Sets the parameter of this name; throws what find_parameter() and its `set` throw.
+void set_parameter(Parameters& parameters, std::string_view name, const std::string& text);
+
+// The name and the text of every parameter.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> describe(
+    const Parameters& parameters);
+
+// Text as of the parameters `r0` and `block`: 8px, 0.02, 0.5wu; 2^16, 16passes, 1pass, all.
+[[nodiscard]] std::string to_text(const Radius& radius);
+[[nodiscard]] std::string to_text(const BlockSize& block);
+
+}  // namespace psf::filter

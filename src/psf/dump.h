@@ -1,0 +1,131 @@
+// Path-vertex buffers: reading, filtering and writing them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "psf/error.h"
+#include "psf/export.h"
+#include "psf/filter.h"
+#include "psf/parameters.h"
+#include "psf/picture.h"
+
+namespace psf {
+
+struct Channel {
+  std::string name;
+  std::string type;  // "u8", "u16", "u32", "u64", "f16", "f32", "f64"
+  std::size_t components = 1;
+  bool octahedral = false;  // unit vectors in two components, read as three floats
+};
+
+// Which passes, from 0: [first, last); `last` not set: all there are.
+struct Passes {
+  std::uint64_t first = 0;
+  std::optional<std::uint64_t> last = {};
+};
+
+struct FilterOptions {
+  Passes passes;
+  bool layers = true;                       // all layers of psf filter, not the colours alone
+  std::optional<std::uint64_t> max_memory;  // bytes
+  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};  // paths
+};
+
+struct FilterResult {
+  std::vector<Picture> pictures;   // one a camera
+  std::vector<std::string> notes;  // what was switched off, and why
+  std::uint64_t passes = 0, blocks = 0;
+  std::uint64_t sources = 0, queries = 0, orphans = 0, left_out = 0;  // records of all blocks
+  double neighbors = 0;                                               // mean over the queries
+};
+
+struct SweepRow {
+  std::vector<std::pair<std::string, std::string>> parameters;  // name and text of each
+  std::vector<std::pair<std::string, double>> errors;           // by metric
+  double neighbors = 0;                                         // mean over the queries
+  double seconds = 0;                                           // of the traversal it shared
+};
+
+class PSF_API Dump {
+ public:
+  // Throws Error{io} where the file cannot be opened, Error{bad_input} where it is no path-vertex
+  // buffer, is damaged, or has no committed pass.
+  explicit Dump(const std::string& path);
+  ~Dump();
+  Dump(Dump&&) noexcept;
+  Dump& operator=(Dump&&) noexcept;
+
+  [[nodiscard]] const std::string& path() const;
+  [[nodiscard]] std::uint64_t records() const;
+  [[nodiscard]] std::uint64_t passes() const;
+  [[nodiscard]] bool closed() const;           // its producer has finished it
+  [[nodiscard]] std::string metadata() const;  // JSON, as in the file
+  [[nodiscard]] const std::vector<Channel>& channels() const;
+  [[nodiscard]] const std::vector<Camera>& cameras() const;
+  // Takes in what was committed since; returns whether there was anything. Not thread-safe.
+  bool refresh();
+
+  // Records [first, first + count) of a channel as stored: `out` has count * components values.
+  // Thread-safe. Throws Error{bad_input} for a channel that is not there or a checksum that is wrong.
+  void read(std::string_view channel, std::uint64_t first, std::uint64_t count,
+            std::span<std::byte> out) const;
+  // The same as floats, of channels of floating point and of octahedral ones (3 a record).
+  void read_floats(std::string_view channel, std::uint64_t first, std::uint64_t count,
+                   std::span<float> out) const;
+
+  // What psf filter does. Throws Error{usage}, Error{bad_input}, Error{limit}, Error{interrupted}.
+  [[nodiscard]] FilterResult filter(const Parameters& parameters = {},
+                                    const FilterOptions& options = {}) const;
+  // What psf sweep does, without files: every set, measured against a reference of one camera by
+  // the metrics of these names; empty: relMSE. Sets that differ in r0 and delta alone share the work.
+  [[nodiscard]] std::vector<SweepRow> sweep(const Picture& reference,
+                                            std::span<const Parameters> sets,
+                                            std::span<const std::string> metrics = {},
+                                            const FilterOptions& options = {},
+                                            std::size_t camera = 0) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+struct WriterOptions {
+  bool compress = true;  // zstd
+  std::string metadata;  // more metadata: a JSON object, formats/README.md, "Metadata"
+};
+
+// Writes a dump. The file appears under its name with its first pass, whole; what is not committed
+// is not in it.
+class PSF_API DumpWriter {
+ public:
+  // Throws Error{io}, Error{bad_input} for channels or metadata that break the rules of the format.
+  DumpWriter(const std::string& path, std::span<const Camera> cameras,
+             std::span<const Channel> channels, const WriterOptions& options = {});
+  ~DumpWriter();
+  DumpWriter(DumpWriter&&) noexcept;
+  DumpWriter& operator=(DumpWriter&&) noexcept;
+
+  // Appends records to the current pass. columns[k]: (count, components) values of channel k.
+  void append(std::size_t count, std::span<const void* const> columns);
+  void commit_pass();
+  // Says that there is nothing to come. Throws Error{usage} where records are not committed.
+  void close();
+
+  [[nodiscard]] const std::vector<Channel>& channels() const;
+  [[nodiscard]] std::uint64_t records() const;  // committed
+  [[nodiscard]] std::uint64_t passes() const;   // committed
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace psf

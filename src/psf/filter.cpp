@@ -1,0 +1,158 @@
+#include "psf/filter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/error.h"
+#include "filter/average.h"
+#include "filter/channels.h"
+#include "filter/radius.h"
+#include "psf/library.h"
+#include "run/pictures.h"
+
+namespace psf {
+namespace {
+
+// The records of the library as those of the filter. Vec3 and Rgb are three packed floats.
+class Columns {
+ public:
+  explicit Columns(const Records& records) : count_(records.pixel.size()), r_(records) {
+    if (records.flags.empty()) flags_.assign(count_, filter::kHasVertex | filter::kShaded);
+  }
+
+  [[nodiscard]] std::size_t size() const { return count_; }
+  [[nodiscard]] filter::Records view() const {
+    filter::Records view;
+    view.flags = r_.flags.empty() ? std::span<const std::uint8_t>(flags_) : one("flags", r_.flags);
+    view.position = three<Vec3>("position", r_.position, true);
+    view.throughput = three<Rgb>("throughput", r_.throughput, true);
+    view.contribution = three<Rgb>("contribution", r_.contribution, true);
+    view.pixel = r_.pixel;
+    view.distance = one("distance", r_.distance);
+    view.unfiltered = three<Rgb>("unfiltered", r_.unfiltered);
+    view.normal = three<Vec3>("normal", r_.normal);
+    view.reflectance = three<Rgb>("reflectance", r_.reflectance);
+    view.direction = three<Vec3>("direction", r_.direction);
+    view.hit_distance = one("hit_distance", r_.hit_distance);
+    view.roughness = one("roughness", r_.roughness);
+    view.visibility = one("visibility", r_.visibility);
+    view.material = one("material", r_.material);
+    view.camera = one("camera", r_.camera);
+    return view;
+  }
+
+ private:
+  void check(const char* name, std::size_t values, std::size_t components, bool needed) const {
+    if (values == count_ * components || (values == 0 && !needed)) return;
+    throw Error(ErrorCode::usage,
+                fmt::format("`{}`: {} values, expected {} x {}, for {} of `pixel`", name, values,
+                            count_, components, count_));
+  }
+  template <class T>
+  std::span<const T> one(const char* name, std::span<const T> values) const {
+    check(name, values.size(), 1, false);
+    return values;
+  }
+  template <class T>
+  std::span<const T> three(const char* name, std::span<const float> values,
+                           bool needed = false) const {
+    static_assert(sizeof(T) == 3 * sizeof(float));
+    check(name, values.size(), 3, needed);
+    return {reinterpret_cast<const T*>(values.data()), values.size() / 3};
+  }
+
+  std::size_t count_;
+  Records r_;
+  std::vector<std::uint8_t> flags_;
+};
+
+void check_places(const filter::Records& records, std::span<const Camera> cameras) {
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const std::size_t camera = records.camera.empty() ? 0 : records.camera[i];
+    if (camera >= cameras.size()) {
+      throw Error(ErrorCode::bad_input, fmt::format("record {}: there is no camera {}", i, camera));
+    }
+    const std::uint64_t pixels = std::uint64_t{cameras[camera].width} * cameras[camera].height;
+    if (records.pixel[i] < pixels) continue;
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format("record {}: pixel {} of camera {}, which has {} x {}", i, records.pixel[i],
+                    camera, cameras[camera].width, cameras[camera].height));
+  }
+}
+
+// What radii need beside the channels of the weights.
+void check_radius(const filter::Parameters& parameters, const filter::Records& records,
+                  std::span<const Camera> cameras) {
+  const bool in_world = parameters.radius.basis == filter::RadiusBasis::world;
+  if ((!in_world || parameters.estimator == filter::Estimator::disk) && records.distance.empty() &&
+      records.size() > 0) {
+    throw Error(ErrorCode::bad_input,
+                "the records have no channel distance, which a radius that depends on the distance "
+                "needs; give it, or `r0` in world units, such as `r0 0.5wu`");
+  }
+  if (parameters.radius.basis != filter::RadiusBasis::footprint) return;
+  for (const Camera& camera : cameras) {
+    if (camera.angle_per_pixel > 0) continue;
+    throw Error(ErrorCode::bad_input,
+                "a camera has no angle_per_pixel, which a radius in pixels needs; give it, or the "
+                "radius as a fraction of the distance, `r0 0.02`");
+  }
+}
+
+}  // namespace
+
+FilteredRecords filter_records(const Records& records, std::span<const Camera> cameras,
+                               const Parameters& parameters, double n) {
+  if (cameras.empty()) throw Error(ErrorCode::usage, "`cameras`: at least one is needed");
+  const Columns columns(records);
+  const filter::Records view = columns.view();
+  const filter::Parameters chosen = [&] {
+    filter::Parameters p = to_filter(parameters);
+    const filter::TermSet asked = asked_terms(parameters);
+    for (const filter::ChannelNeed& need : filter::optional_channels(p)) {
+      if (need.term && (asked & filter::bit(*need.term)) == 0 &&
+          !filter::has_channel(view, need.channel)) {
+        p.weights.switch_off(*need.term);
+      }
+    }
+    return p;
+  }();
+  check_places(view, cameras);
+  check_radius(chosen, view, cameras);
+
+  std::vector<filter::CameraView> views;
+  double pixels = 0;
+  for (const Camera& camera : cameras) {
+    views.push_back({camera.width, camera.height, camera.angle_per_pixel});
+    pixels += static_cast<double>(camera.width) * camera.height;
+  }
+  const double samples = std::max(1.0, static_cast<double>(columns.size()) / pixels);
+  const filter::Block block{0, n > 0 ? n : samples, samples, views};
+
+  FilteredRecords result;
+  filter::radii(chosen.radius, view, block, result.radius);
+  filter::Average average = filter::average(view, result.radius, block, chosen);
+  std::vector<run::CameraPictures> pictures;
+  for (const filter::CameraView& camera : views) {
+    run::PictureLayers layers;
+    layers.albedo = !view.reflectance.empty();
+    layers.normal = !view.normal.empty();
+    pictures.emplace_back(camera, layers);
+  }
+  static_cast<void>(run::add_records(view, average, result.radius, 0, columns.size(), pictures));
+  for (std::size_t k = 0; k < pictures.size(); ++k) {
+    result.pictures.push_back(to_picture(pictures[k].image(), cameras[k].name));
+  }
+  result.c_bar.resize(3 * columns.size());
+  if (!average.c_bar.empty()) {
+    std::memcpy(result.c_bar.data(), average.c_bar.data(), result.c_bar.size() * sizeof(float));
+  }
+  result.neighbors = std::move(average.neighbors);
+  if (!average.radius.empty()) result.radius = std::move(average.radius);
+  return result;
+}
+
+}  // namespace psf

@@ -1,0 +1,53 @@
+// Filters records that are in memory: no file.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "psf/error.h"
+#include "psf/export.h"
+#include "psf/parameters.h"
+#include "psf/picture.h"
+
+namespace psf {
+
+struct Camera {
+  std::string name;
+  std::uint32_t width = 1, height = 1;  // pixels
+  double angle_per_pixel = 0;           // radians; for radii in pixels
+};
+
+// Views of n records, which are one block: a record a path, in path order. Those that follow the
+// first line may be empty. What each is, and its unit, is in formats/README.md, "Channels".
+struct Records {
+  std::span<const float> position, throughput, contribution;  // (n, 3)
+  std::span<const std::uint32_t> pixel;                       // (n), y * width + x
+
+  std::span<const float> distance;  // (n); needed unless r0 is in world units
+  std::span<const float> unfiltered, normal, reflectance;  // (n, 3)
+  std::span<const float> direction;                        // (n, 3), unit, toward the camera
+  std::span<const float> hit_distance, roughness;          // (n)
+  std::span<const std::uint32_t> visibility, material;     // (n)
+  std::span<const std::uint16_t> camera;                   // (n); empty: the first
+  std::span<const std::uint8_t> flags;                     // (n); empty: 3, with vertex and shaded
+};
+
+struct FilteredRecords {
+  std::vector<float> c_bar;              // (n, 3); 0 for a record without average
+  std::vector<std::uint32_t> neighbors;  // (n); number of records averaged
+  std::vector<float> radius;             // (n), world units
+  std::vector<Picture> pictures;         // one a camera, with the layers of psf filter
+};
+
+// Filters one block. `n`: samples per pixel accumulated up to its end, for radii that shrink; 0:
+// those of the records. The result is the same for any number of threads. Throws Error{usage} for
+// columns of different lengths, Error{bad_input} for a channel that is missing, a pixel or camera
+// that does not exist, and Error{interrupted}.
+[[nodiscard]] PSF_API FilteredRecords filter_records(const Records& records,
+                                                     std::span<const Camera> cameras,
+                                                     const Parameters& parameters = {},
+                                                     double n = 0);
+
+}  // namespace psf

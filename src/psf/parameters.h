@@ -1,0 +1,40 @@
+// The parameters of the filter, each as text by its name, as on the command line of psf filter.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "psf/export.h"
+
+namespace psf {
+
+struct ParameterHelp {
+  std::string name, type, help, standard;  // "r0", "R", what it does, the default's text: "8px"
+};
+
+// A value: the defaults of psf filter, and what was set. What is not set is chosen for a dump: a
+// weight whose channel the dump lacks is off. What is set must be possible, or is an error.
+class PSF_API Parameters {
+ public:
+  // Sets a parameter: set("r0", "16px").set("normal", "off"). Throws Error{usage} that says what
+  // may be written, or which names there are.
+  Parameters& set(std::string_view name, const std::string& text);
+  // Switches off the weights that are not set.
+  Parameters& no_weights(bool off = true);
+
+  // The text of a parameter, set or not.
+  [[nodiscard]] std::string get(std::string_view name) const;
+  [[nodiscard]] const std::map<std::string, std::string>& given() const { return given_; }
+  [[nodiscard]] bool has_no_weights() const { return no_weights_; }
+
+  // Every parameter that there is.
+  [[nodiscard]] static std::vector<ParameterHelp> help();
+
+ private:
+  std::map<std::string, std::string> given_;
+  bool no_weights_ = false;
+};
+
+}  // namespace psf

@@ -1,0 +1,46 @@
+// Pictures in memory and in files, and the error of one against another.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "psf/export.h"
+
+namespace psf {
+
+struct Layer {
+  std::string name;           // "R", "unfiltered-input.G", "neighbors.Y"
+  std::vector<float> values;  // (height, width), row 0 at the top
+};
+
+struct PSF_API Picture {
+  std::size_t width = 0, height = 0;  // pixels
+  std::string camera;
+  std::vector<Layer> layers;
+  std::vector<std::pair<std::string, std::string>> attributes;  // of its EXR
+
+  // The values of a layer. Throws Error{bad_input} where there is none of this name.
+  [[nodiscard]] const std::vector<float>& layer(std::string_view name) const;
+  // The colours of the layers R, G and B behind `prefix`, (height, width, 3), linear.
+  [[nodiscard]] std::vector<float> rgb(const std::string& prefix = "") const;
+  // sRGB bytes (height, width, 3) to look at: times 2^exposure, tone-mapped as the PNGs are.
+  [[nodiscard]] std::vector<unsigned char> displayed(float exposure = 0) const;
+
+  // Writes an EXR with all layers and attributes, or a PNG to look at, by the extension. The file
+  // appears whole or not at all. Throws Error{io}, Error{usage} for another extension.
+  void save(const std::string& path) const;
+  // Reads the colours of an EXR: its root or the layer of this name. Throws Error{io},
+  // Error{bad_input}.
+  [[nodiscard]] static Picture read(const std::string& path, const std::string& layer = "");
+
+  // The error against a reference of the same size by a metric of metric_names(), upper or lower
+  // case, as psf compare gives it. Throws Error{usage}.
+  [[nodiscard]] double error(const Picture& reference, std::string_view metric = "relMSE") const;
+};
+
+[[nodiscard]] PSF_API std::vector<std::string> metric_names();
+
+}  // namespace psf

@@ -1,0 +1,10 @@
+// All of the library.
+#pragma once
+
+#include "psf/dump.h"
+#include "psf/error.h"
+#include "psf/filter.h"
+#include "psf/interrupt.h"
+#include "psf/parameters.h"
+#include "psf/picture.h"
+#include "psf/version.h"

@@ -1,0 +1,215 @@
+// The library that is installed, through its own headers alone: what is written is read back,
+// a file and arrays give the same picture, and errors say what is wrong. That its pictures are those
+// of psf filter, byte for byte, is the test of the package.
+#include <cstring>
+#include <random>
+
+#include "catch.h"
+#include "psf/psf.h"
+#include "temp_folder.h"
+
+namespace {
+
+using Catch::Matchers::StartsWith;
+using psf::tests::TempFolder;
+
+constexpr std::uint32_t kSide = 24;
+const std::vector<psf::Camera> kAbove = {{"above", kSide, kSide, 1.0 / kSide}};
+
+// A plane of two colours seen from distance 1, lit by noise; one path a pixel and pass.
+struct Plane {
+  std::vector<float> position, throughput, contribution, distance, normal, reflectance;
+  std::vector<std::uint32_t> pixel;
+
+  explicit Plane(std::size_t passes) {
+    std::mt19937 random(7);
+    std::exponential_distribution<float> noise;
+    const auto unit = [&random] { return static_cast<float>(random() >> 8) * 0x1p-24f; };
+    for (std::size_t i = 0; i < passes * kSide * kSide; ++i) {
+      const auto in_pass = static_cast<std::uint32_t>(i % (kSide * kSide));
+      const float x = (static_cast<float>(in_pass % kSide) + unit()) / kSide;
+      const float y = (static_cast<float>(in_pass / kSide) + unit()) / kSide;
+      const float rho = x < 0.5f ? 0.2f : 0.8f, c = rho * noise(random);
+      position.insert(position.end(), {x, y, 0});
+      throughput.insert(throughput.end(), {1, 0.5f, 1});
+      contribution.insert(contribution.end(), {c, c, 2 * c});
+      reflectance.insert(reflectance.end(), {rho, rho, rho});
+      normal.insert(normal.end(), {0, 0, 1});
+      distance.push_back(1);
+      pixel.push_back(in_pass);
+    }
+  }
+
+  [[nodiscard]] psf::Records records() const {
+    psf::Records records;
+    records.position = position;
+    records.throughput = throughput;
+    records.contribution = contribution;
+    records.pixel = pixel;
+    records.distance = distance;
+    records.normal = normal;
+    records.reflectance = reflectance;
+    return records;
+  }
+};
+
+const std::vector<psf::Channel> kChannels = {{"position", "f32", 3},     {"throughput", "f32", 3},
+                                             {"contribution", "f32", 3}, {"distance", "f32", 1},
+                                             {"normal", "f32", 3},       {"reflectance", "f32", 3},
+                                             {"pixel", "u32", 1}};
+
+void write(const std::string& path, const Plane& plane, std::size_t passes) {
+  psf::DumpWriter writer(path, kAbove, kChannels);
+  const std::size_t count = kSide * kSide;
+  for (std::size_t pass = 0; pass < passes; ++pass) {
+    const std::size_t at = pass * count;
+    const void* columns[] = {
+        &plane.position[3 * at], &plane.throughput[3 * at], &plane.contribution[3 * at],
+        &plane.distance[at],     &plane.normal[3 * at],     &plane.reflectance[3 * at],
+        &plane.pixel[at]};
+    writer.append(count, columns);
+    writer.commit_pass();
+  }
+  writer.close();
+  CHECK(writer.passes() == passes);
+  CHECK(writer.records() == passes * count);
+}
+
+}  // namespace
+
+TEST_CASE("parameters are text by name, what is not set is the default") {
+  psf::Parameters parameters;
+  CHECK(parameters.get("r0") == "8px");
+  parameters.set("r0", "12px").set("normal", "off");
+  CHECK(parameters.get("r0") == "12px");
+  CHECK(parameters.get("normal") == "off");
+  CHECK(parameters.get("gloss") == "0.8");
+  CHECK(parameters.no_weights().get("gloss") == "off");
+  CHECK(psf::Parameters::help().size() == 18);
+  CHECK_THROWS_WITH(parameters.set("r1", "2"), StartsWith("there is no parameter 'r1'"));
+  CHECK_THROWS_WITH(parameters.set("r0", "x"), StartsWith("`r0`: 'x' is no radius"));
+  CHECK(parameters.get("r0") == "12px");
+}
+
+TEST_CASE("what is written is read back, and grows") {
+  const TempFolder folder;
+  const Plane plane(3);
+  write(folder / "a.pvb", plane, 3);
+  const psf::Dump dump(folder / "a.pvb");
+  CHECK(dump.passes() == 3);
+  CHECK(dump.records() == 3 * kSide * kSide);
+  CHECK(dump.closed());
+  REQUIRE(dump.cameras().size() == 1);
+  CHECK(dump.cameras()[0].name == "above");
+  CHECK(dump.cameras()[0].width == kSide);
+  REQUIRE(dump.channels().size() == kChannels.size());
+  CHECK(dump.channels()[1].name == "throughput");
+  std::vector<float> some(3 * 10);
+  dump.read_floats("contribution", 500, 10, some);
+  CHECK(std::memcmp(some.data(), &plane.contribution[1500], some.size() * sizeof(float)) == 0);
+  std::vector<std::uint32_t> pixels(10);
+  dump.read("pixel", 570, 10, std::as_writable_bytes(std::span(pixels)));
+  CHECK(std::equal(pixels.begin(), pixels.end(), &plane.pixel[570]));
+  CHECK_THROWS_AS(dump.read_floats("roughness", 0, 1, some), psf::Error);
+  CHECK_THROWS_AS(psf::Dump(folder / "none.pvb"), psf::Error);
+}
+
+TEST_CASE("a file and arrays give the same picture") {
+  const TempFolder folder;
+  const Plane plane(2);
+  write(folder / "a.pvb", plane, 2);
+  psf::Parameters parameters;
+  parameters.set("block", "all").set("r0", "3px").set("reflectance", "0.1");
+  const psf::FilterResult from_file = psf::Dump(folder / "a.pvb").filter(parameters);
+  const psf::FilteredRecords in_memory = psf::filter_records(plane.records(), kAbove, parameters);
+  REQUIRE(from_file.pictures.size() == 1);
+  const psf::Picture& picture = from_file.pictures[0];
+  REQUIRE(picture.layers.size() == in_memory.pictures[0].layers.size());
+  for (std::size_t k = 0; k < picture.layers.size(); ++k) {
+    INFO(picture.layers[k].name);
+    CHECK(picture.layers[k].name == in_memory.pictures[0].layers[k].name);
+    CHECK(picture.layers[k].values == in_memory.pictures[0].layers[k].values);
+  }
+  CHECK(from_file.sources == plane.pixel.size());
+  CHECK(from_file.notes.size() == 1);  // no visibility, no directions for gloss
+
+  // The radius of the second pass of two, and what it means for a square pattern.
+  CHECK(in_memory.radius[0] == Approx(3.0 / kSide / std::pow(2, 1.0 / 6)));
+  double mean = 0;
+  for (const std::uint32_t m : in_memory.neighbors) mean += m;
+  CHECK(mean / static_cast<double>(in_memory.neighbors.size()) == Approx(from_file.neighbors));
+  // No average reaches over the border of the colours: rho in the mean, and far less noise.
+  double left = 0, right = 0;
+  for (std::size_t i = 0; i < plane.pixel.size(); ++i) {
+    (plane.position[3 * i] < 0.5f ? left : right) += in_memory.c_bar[3 * i];
+  }
+  const auto half = static_cast<double>(plane.pixel.size()) / 2;
+  CHECK(left / half == Approx(0.2).epsilon(0.1));
+  CHECK(right / half == Approx(0.8).epsilon(0.1));
+}
+
+TEST_CASE("r0 0 gives the picture without filter, and errors are those of the formula") {
+  const Plane plane(1);
+  psf::Parameters none;
+  none.set("r0", "0");
+  const psf::Picture picture = psf::filter_records(plane.records(), kAbove, none).pictures[0];
+  CHECK(picture.rgb() == picture.rgb("unfiltered-input."));
+  psf::Picture reference = picture;
+  for (psf::Layer& layer : reference.layers) {
+    for (float& value : layer.values) value += 0.5f;
+  }
+  CHECK(picture.error(picture) == 0);
+  CHECK(picture.error(reference, "mse") == Approx(0.25));
+  CHECK_THROWS_WITH(picture.error(reference, "nothing"), Catch::Matchers::Contains("relMSE"));
+  CHECK(picture.displayed().size() == 3 * kSide * kSide);
+}
+
+TEST_CASE("a sweep measures every set as a filter run of its own does") {
+  const TempFolder folder;
+  const Plane plane(4);
+  write(folder / "a.pvb", plane, 4);
+  const psf::Dump dump(folder / "a.pvb");
+  psf::Picture reference = dump.filter(psf::Parameters().set("r0", "0")).pictures[0];
+  for (psf::Layer& layer : reference.layers) {
+    for (std::size_t i = 0; i < layer.values.size(); ++i) {
+      layer.values[i] = (i % kSide < kSide / 2 ? 0.2f : 0.8f) * (layer.name == "G" ? 0.5f : 1);
+    }
+  }
+  std::vector<psf::Parameters> sets;
+  for (const char* r0 : {"0", "2px", "4px"}) sets.push_back(psf::Parameters().set("r0", r0));
+  const std::vector<std::string> metrics = {"relMSE", "MSE"};
+  const std::vector<psf::SweepRow> rows = dump.sweep(reference, sets, metrics);
+  REQUIRE(rows.size() == 3);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const psf::Picture picture = dump.filter(sets[k]).pictures[0];
+    REQUIRE(rows[k].errors.size() == 2);
+    for (const auto& [metric, error] : rows[k].errors) {
+      INFO(metric);
+      CHECK(error == Approx(picture.error(reference, metric)).epsilon(1e-5));
+    }
+    CHECK(rows[k].parameters[0] == std::pair<std::string, std::string>("r0", sets[k].get("r0")));
+  }
+  CHECK(rows[1].errors[0].second < rows[0].errors[0].second);
+}
+
+TEST_CASE("mistakes are errors that name what is wrong") {
+  const Plane plane(1);
+  psf::Records records = plane.records();
+  records.normal = records.normal.subspan(3);
+  CHECK_THROWS_WITH(psf::filter_records(records, kAbove), StartsWith("`normal`: 1725 values"));
+  records = plane.records();
+  records.distance = {};
+  CHECK_THROWS_WITH(psf::filter_records(records, kAbove), Catch::Matchers::Contains("distance"));
+  const std::vector<psf::Camera> small = {{"small", 2, 2, 0.5}};
+  CHECK_THROWS_WITH(psf::filter_records(plane.records(), small),
+                    StartsWith("record 4: pixel 4 of camera 0, which has 2 x 2"));
+  CHECK_THROWS_AS(psf::filter_records(plane.records(), {}), psf::Error);
+  CHECK_THROWS_WITH(
+      psf::filter_records(plane.records(), kAbove, psf::Parameters().set("material", "on")),
+      Catch::Matchers::Contains("material"));
+  const TempFolder folder;
+  const std::vector<psf::Channel> odd = {{"position", "f31", 3}};
+  CHECK_THROWS_WITH(psf::DumpWriter(folder / "a.pvb", kAbove, odd),
+                    Catch::Matchers::Contains("there is no type f31"));
+  CHECK(folder.file_count() == 0);
+}

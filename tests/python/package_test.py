@@ -1,0 +1,223 @@
+"""The package gives what the commands give, byte for byte; arrays cost no copy where none is needed;
+mistakes are exceptions of one line; ^C ends long work.
+
+    package_test.py PACKAGE PROGRAMS SAMPLE_DATA
+"""
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+import warnings
+
+import numpy as np
+
+PACKAGE, PROGRAMS, SAMPLES = sys.argv[1:4]
+sys.path.insert(0, PACKAGE)
+import psf  # noqa: E402
+
+
+def run(*command: str) -> str:
+    command = (os.path.join(PROGRAMS, command[0]),) + command[1:]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+class Package(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.path = os.path.join(cls.folder.name, "a.pvb")
+        cls.reference = os.path.join(cls.folder.name, "reference.exr")
+        scene = os.path.join(SAMPLES, "cornell.json")
+        size = ["--size", "32x32", "--quiet"]
+        run("psf-render", scene, *size, "--passes", "4", "-o", cls.path)
+        run("psf-render", scene, *size, "--passes", "16", "--seed", "9", "--image", cls.reference)
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        cls.folder.cleanup()
+
+    def file(self, name: str) -> str:
+        return os.path.join(self.folder.name, name)
+
+    def same_bytes(self, a: str, b: str) -> bool:
+        with open(a, "rb") as one, open(b, "rb") as other:
+            return one.read() == other.read()
+
+    def test_filter_gives_the_bytes_of_the_command(self) -> None:
+        dump = psf.open(self.path)
+        for options, parameters in (
+                ([], {}),
+                (["--r0", "12px", "--delta", "0.5", "--block", "all", "--normal", "off",
+                  "--demodulate", "--iterations", "2"],
+                 dict(r0="12px", delta=0.5, block="all", normal=None, demodulate=True, iterations=2)),
+                (["--no-weights", "--hit-distance", "0.1", "--estimator", "disk"],
+                 dict(no_weights=True, hit_distance=0.1, estimator="disk"))):
+            run("psf", "filter", self.path, "-o", self.file("c.exr"), *options, "--quiet")
+            dump.filter(**parameters).save(self.file("p.exr"))
+            self.assertTrue(self.same_bytes(self.file("c.exr"), self.file("p.exr")), options)
+        run("psf", "filter", self.path, "-o", self.file("c.png"), "--passes", "1:3", "--quiet")
+        dump.filter(passes=slice(1, 3)).save(self.file("p.png"))
+        self.assertTrue(self.same_bytes(self.file("c.png"), self.file("p.png")))
+
+    def test_pictures_are_arrays(self) -> None:
+        picture = psf.open(self.path).filter()
+        self.assertEqual(picture.rgb.shape, (32, 32, 3))
+        self.assertEqual(picture.rgb.dtype, np.float32)
+        self.assertTrue(np.array_equal(picture.rgb[..., 0], picture["R"]))
+        self.assertTrue(np.shares_memory(picture["R"], picture["R"]))
+        self.assertGreater(picture.neighbors.mean(), 1)
+        self.assertEqual(picture.attributes["psf:r0"], "8px")
+        red = picture["R"]
+        del picture
+        self.assertTrue(np.isfinite(red).all())  # the view keeps its picture
+
+    def test_error_is_that_of_compare(self) -> None:
+        picture = psf.open(self.path).filter()
+        picture.save(self.file("e.exr"))
+        for metric in psf.metrics():
+            said = run("psf", "compare", self.file("e.exr"), self.reference, "--metric", metric)
+            self.assertIn(f"{picture.error(self.reference, metric):.4g}"[:5], said, metric)
+        shown = picture.png()
+        self.assertTrue(shown.startswith(b"\x89PNG"))
+        self.assertEqual(shown, picture._repr_png_())
+
+    def test_channels_are_read_where_they_are_indexed(self) -> None:
+        dump = psf.open(self.path)
+        out = self.file("npy")
+        run("psf", "export", self.path, "-o", out, "--format", "npy", "--quiet")
+        for channel in dump.channels:
+            expected = np.load(os.path.join(out, channel.name + ".npy"))
+            whole = np.asarray(dump[channel.name])
+            self.assertTrue(np.array_equal(whole, expected, equal_nan=expected.dtype.kind == "f"),
+                            channel.name)
+            self.assertTrue(np.array_equal(dump[channel.name][700:90:1], whole[700:90:1]))
+            self.assertTrue(np.array_equal(dump[channel.name][10:900:7], whole[10:900:7],
+                                           equal_nan=whole.dtype.kind == "f"))
+            self.assertTrue(np.array_equal(dump[channel.name][-1], whole[-1],
+                                           equal_nan=whole.dtype.kind == "f"))
+        with self.assertRaises(IndexError):
+            dump["pixel"][dump.records]
+        with self.assertRaisesRegex(KeyError, "has no channel colour; it has"):
+            dump["colour"]
+
+    def test_arrays_give_the_picture_of_the_file(self) -> None:
+        dump = psf.open(self.path)
+        names = [c.name for c in dump.channels if c.name not in ("path",)]
+        known = {"position", "throughput", "contribution", "pixel", "distance", "unfiltered",
+                 "normal", "reflectance", "direction", "hit_distance", "roughness", "visibility",
+                 "material", "flags"}
+        arrays = {name: dump[name][:] for name in names if name in known}
+        result = psf.filter_records(cameras=dump.cameras, parameters={"block": "all"}, n=4, **arrays)
+        expected = dump.filter(block="all")
+        self.assertTrue(np.array_equal(result.pictures[0].rgb, expected.rgb))
+        self.assertEqual(result.c_bar.shape, (dump.records, 3))
+        self.assertAlmostEqual(float(result.neighbors[result.neighbors > 0].mean()) > 1, True)
+
+    def test_a_sweep_is_rows(self) -> None:
+        dump = psf.open(self.path)
+        rows = dump.sweep(self.reference, metrics=["relMSE", "SSIM"], r0=psf.geomspace(2, 8, 3),
+                          normal=[0.9, None])
+        self.assertEqual(len(rows), 6)
+        self.assertEqual([row["r0"] for row in rows], ["2px", "2px", "4px", "4px", "8px", "8px"])
+        for row in rows:
+            alone = dump.filter(r0=row["r0"], normal=row["normal"])
+            self.assertAlmostEqual(row["relMSE"] / alone.error(self.reference), 1, 4)
+
+    def test_what_is_written_is_read(self) -> None:
+        path = self.file("w.pvb")
+        camera = psf.Camera("above", 4, 2, 0.1)
+        x = np.arange(24, dtype=np.float64).reshape(8, 3)
+        channels = {"position": ("f4", 3), "throughput": ("f4", 3), "contribution": ("f4", 3),
+                    "distance": "f4", "pixel": "u4", "my.code": ("u2", 2)}
+        columns = dict(position=x, throughput=np.ones((8, 3)), contribution=x, distance=np.ones(8),
+                       pixel=np.arange(8))
+        with psf.create(path, [camera], channels, metadata={"scene": "made"}) as writer:
+            for k in range(3):
+                writer.append(**columns, **{"my.code": np.full((8, 2), k)})
+                writer.commit_pass()
+            self.assertEqual((writer.passes, writer.records), (3, 24))
+        dump = psf.open(path)
+        self.assertTrue(dump.closed)
+        self.assertEqual(dump.metadata["scene"], "made")
+        self.assertTrue(np.array_equal(dump["my.code"][16:], np.full((8, 2), 2)))
+        self.assertTrue(np.array_equal(dump["position"][8:16], x.astype(np.float32)))
+        with self.assertRaisesRegex(ValueError, "distance has 7 values"):
+            with psf.create(self.file("x.pvb"), [camera], channels) as writer:
+                writer.append(**{**columns, "distance": np.ones(7), "my.code": np.ones((8, 2))})
+        self.assertFalse(os.path.exists(self.file("x.pvb")))
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            dump.filter(r0="1px")
+        self.assertIn("has no channel", str(said[0].message))
+
+    def test_mistakes_are_one_line(self) -> None:
+        dump = psf.open(self.path)
+        for call, code, text in (
+                (lambda: psf.open("none.pvb"), 4, "none.pvb"),
+                (lambda: dump.filter(r0="8 px"), 2, "r0: '8 px' is no radius"),
+                (lambda: dump.filter(radius=8), 2, "there is no parameter 'radius'"),
+                (lambda: dump.filter(delta=1), 2, "delta: must be in"),
+                (lambda: dump.filter(passes=99), 2, "passes"),
+                (lambda: dump.filter(block="all", max_memory=1), 5, "max-memory"),
+                (lambda: dump.filter().save(self.file("a.jpg")), 2, "a.jpg"),
+                (lambda: psf.read_picture(self.path), 3, "a.pvb")):
+            with self.assertRaises(psf.Error) as raised:
+                call()
+            self.assertEqual(raised.exception.code, code, raised.exception)
+            self.assertIn(text, str(raised.exception))
+            self.assertNotIn("\n", str(raised.exception))
+            self.assertNotIn("`", str(raised.exception))
+
+    def test_progress_is_said_and_what_it_raises_ends_the_work(self) -> None:
+        dump = psf.open(self.path)
+        seen = []
+        dump.filter(block="2^8", progress=lambda done, total: seen.append((done, total)))
+        self.assertEqual(seen[-1], (dump.records, dump.records))
+        with self.assertRaises(ZeroDivisionError):
+            dump.filter(block="2^8", r0="64px", no_weights=True, progress=lambda done, total: 1 // 0)
+        dump.filter()  # and the next call works
+
+    def test_an_interrupt_ends_long_work_and_the_lock_is_free(self) -> None:
+        dump = psf.open(self.path)
+        ticks = []
+
+        def tick() -> None:
+            for _ in range(20):
+                ticks.append(time.monotonic())
+                time.sleep(0.01)
+            os.kill(os.getpid(), signal.SIGINT)
+
+        thread = threading.Thread(target=tick)
+        thread.start()
+        with self.assertRaises(KeyboardInterrupt):
+            while True:  # whatever the machine: it is at work when the signal comes
+                dump.filter(block="2^6", r0="64px", no_weights=True, iterations=2)
+        thread.join()
+        self.assertEqual(len(ticks), 20)
+        dump.filter()
+
+    def test_the_example_runs(self) -> None:
+        example = os.path.join(os.path.dirname(os.path.abspath(__file__)), "example.py")
+        said = subprocess.run(
+            [sys.executable, "-B", example, self.path, self.reference, self.file("x.exr")],
+            env=dict(os.environ, PYTHONPATH=PACKAGE), check=True, capture_output=True, text=True)
+        self.assertIn("(100, 3) True", said.stdout)
+        run("psf", "filter", self.path, "-o", self.file("y.exr"), "--r0", "12px", "--delta",
+            f"{1 / 3:.17g}", "--quiet")
+        self.assertTrue(self.same_bytes(self.file("x.exr"), self.file("y.exr")))
+
+    def test_the_parameters_are_those_of_the_command(self) -> None:
+        said = run("psf", "filter", "--help")
+        for parameter in psf.parameters():
+            self.assertIn("--" + parameter.name.replace("_", "-"), said)
+            self.assertTrue(parameter.help and parameter.default)
+        self.assertIn("path-vertex", psf.__doc__)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
