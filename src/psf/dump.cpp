@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <mutex>
+#include <shared_mutex>
+
 #include "core/error.h"
 #include "metrics/reference.h"
 #include "psf/library.h"
@@ -33,6 +36,7 @@ struct Dump::State {
   }
 
   run::Dump dump;
+  mutable std::shared_mutex mutex;  // refresh() changes what the others read
   std::vector<Channel> channels;
   std::vector<Camera> cameras;
 };
@@ -64,20 +68,25 @@ const std::vector<Camera>& Dump::cameras() const {
   return state_->cameras;
 }
 bool Dump::refresh() {
+  const std::unique_lock alone(state_->mutex, std::try_to_lock);
+  if (!alone) throw Error(ErrorCode::usage, path() + ": is being read; refresh it afterwards");
   return state_->dump.refresh();
 }
 
 void Dump::read(std::string_view channel, std::uint64_t first, std::uint64_t count,
                 std::span<std::byte> out) const {
+  const std::shared_lock reading(state_->mutex);
   state_->dump.reader().read(state_->channel(channel), first, static_cast<std::size_t>(count), out);
 }
 void Dump::read_floats(std::string_view channel, std::uint64_t first, std::uint64_t count,
                        std::span<float> out) const {
+  const std::shared_lock reading(state_->mutex);
   state_->dump.reader().read_floats(state_->channel(channel), first,
                                     static_cast<std::size_t>(count), out);
 }
 
 FilterResult Dump::filter(const Parameters& parameters, const FilterOptions& options) const {
+  const std::shared_lock reading(state_->mutex);
   run::FilterRequest request;
   request.parameters = to_filter(parameters);
   FilterResult result;
@@ -112,6 +121,7 @@ FilterResult Dump::filter(const Parameters& parameters, const FilterOptions& opt
 std::vector<SweepRow> Dump::sweep(const Picture& reference, std::span<const Parameters> sets,
                                   std::span<const std::string> metrics,
                                   const FilterOptions& options, std::size_t camera) const {
+  const std::shared_lock reading(state_->mutex);
   if (camera >= state_->cameras.size()) {
     throw Error(ErrorCode::usage, fmt::format("`camera`: there is no camera {}", camera));
   }

@@ -70,7 +70,8 @@ class PSF_API Dump {
   [[nodiscard]] std::string metadata() const;  // JSON, as in the file
   [[nodiscard]] const std::vector<Channel>& channels() const;
   [[nodiscard]] const std::vector<Camera>& cameras() const;
-  // Takes in what was committed since; returns whether there was anything. Not thread-safe.
+  // Takes in what was committed since; returns whether there was anything. Throws Error{usage} where
+  // another call is at work on the dump. All other calls may be made from several threads at once.
   bool refresh();
 
   // Records [first, first + count) of a channel as stored: `out` has count * components values.
@@ -99,14 +100,17 @@ class PSF_API Dump {
 
 struct WriterOptions {
   bool compress = true;  // zstd
-  std::string metadata;  // more metadata: a JSON object, formats/README.md, "Metadata"
+  // More metadata: a JSON object with keys of formats/README.md, "Metadata", or of your own.
+  std::string metadata;
 };
 
-// Writes a dump. The file appears under its name with its first pass, whole; what is not committed
+// Writes a dump; calls may come from several threads, one after the other. The file appears under its name with its first pass, whole; what is not committed
 // is not in it.
 class PSF_API DumpWriter {
  public:
-  // Throws Error{io}, Error{bad_input} for channels or metadata that break the rules of the format.
+  // `cameras`: at least one; they stand for those that the metadata may name, of which those of the
+  // same name keep their matrices. Throws Error{io}, Error{bad_input} for channels, cameras or
+  // metadata that break the rules of the format.
   DumpWriter(const std::string& path, std::span<const Camera> cameras,
              std::span<const Channel> channels, const WriterOptions& options = {});
   ~DumpWriter();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "core/error.h"
@@ -68,6 +69,26 @@ class Columns {
   std::vector<std::uint8_t> flags_;
 };
 
+// As of a dump: sizes that a picture can have.
+void check_cameras(std::span<const Camera> cameras, std::size_t records) {
+  constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 32;
+  constexpr std::size_t kMostRecords = (std::size_t{1} << 31) - 1;
+  if (cameras.empty()) throw Error(ErrorCode::usage, "`cameras`: at least one is needed");
+  std::uint64_t pixels = 0;
+  for (const Camera& camera : cameras) {
+    const std::uint64_t own = std::uint64_t{camera.width} * camera.height;
+    if (own == 0 || own > kMostPixels - pixels) {
+      throw Error(ErrorCode::bad_input, fmt::format("camera {}: {} x {} is no size for a picture",
+                                                    camera.name, camera.width, camera.height));
+    }
+    pixels += own;
+  }
+  if (records > kMostRecords) {
+    throw Error(ErrorCode::limit, fmt::format("{} records are more than a block may have, {}",
+                                              records, kMostRecords));
+  }
+}
+
 void check_places(const filter::Records& records, std::span<const Camera> cameras) {
   for (std::size_t i = 0; i < records.size(); ++i) {
     const std::size_t camera = records.camera.empty() ? 0 : records.camera[i];
@@ -93,12 +114,16 @@ void check_radius(const filter::Parameters& parameters, const filter::Records& r
                 "the records have no channel distance, which a radius that depends on the distance "
                 "needs; give it, or `r0` in world units, such as `r0 0.5wu`");
   }
-  if (parameters.radius.basis != filter::RadiusBasis::footprint) return;
+  if (parameters.radius.basis != filter::RadiusBasis::footprint &&
+      parameters.estimator != filter::Estimator::disk) {
+    return;
+  }
   for (const Camera& camera : cameras) {
-    if (camera.angle_per_pixel > 0) continue;
-    throw Error(ErrorCode::bad_input,
-                "a camera has no angle_per_pixel, which a radius in pixels needs; give it, or the "
-                "radius as a fraction of the distance, `r0 0.02`");
+    if (std::isfinite(camera.angle_per_pixel) && camera.angle_per_pixel > 0) continue;
+    throw Error(
+        ErrorCode::bad_input,
+        "a camera has no angle_per_pixel, which a radius in pixels and `estimator disk` need; "
+        "give it, or the radius as a fraction of the distance, `r0 0.02`");
   }
 }
 
@@ -106,7 +131,7 @@ void check_radius(const filter::Parameters& parameters, const filter::Records& r
 
 FilteredRecords filter_records(const Records& records, std::span<const Camera> cameras,
                                const Parameters& parameters, double n) {
-  if (cameras.empty()) throw Error(ErrorCode::usage, "`cameras`: at least one is needed");
+  check_cameras(cameras, records.pixel.size());
   const Columns columns(records);
   const filter::Records view = columns.view();
   const filter::Parameters chosen = [&] {
@@ -130,7 +155,9 @@ FilteredRecords filter_records(const Records& records, std::span<const Camera> c
     pixels += static_cast<double>(camera.width) * camera.height;
   }
   const double samples = std::max(1.0, static_cast<double>(columns.size()) / pixels);
-  const filter::Block block{0, n > 0 ? n : samples, samples, views};
+  // One block, the first.
+  const double counted = chosen.radius.count == filter::RadiusCount::blocks ? 1 : samples;
+  const filter::Block block{0, n > 0 ? n : counted, samples, views};
 
   FilteredRecords result;
   filter::radii(chosen.radius, view, block, result.radius);

@@ -15,16 +15,19 @@
 namespace psf {
 namespace {
 
+void check_size(const Picture& picture, std::size_t values, const std::string& layer) {
+  if (values == picture.width * picture.height) return;
+  throw Error(ErrorCode::usage,
+              fmt::format("the layer {} has {} values, the picture {} x {} pixels", layer, values,
+                          picture.width, picture.height));
+}
+
 film::Image to_image(const Picture& picture) {
   film::Image image;
   image.width = picture.width;
   image.height = picture.height;
   for (const Layer& layer : picture.layers) {
-    if (layer.values.size() != picture.width * picture.height) {
-      throw Error(ErrorCode::usage,
-                  fmt::format("the layer {} has {} values, the picture {} x {} pixels", layer.name,
-                              layer.values.size(), picture.width, picture.height));
-    }
+    check_size(picture, layer.values.size(), layer.name);
     image.layers.push_back({layer.name, layer.values});
   }
   image.attributes = picture.attributes;
@@ -63,6 +66,7 @@ std::vector<float> Picture::rgb(const std::string& prefix) const {
   std::vector<float> colors(3 * width * height);
   for (std::size_t c = 0; c < 3; ++c) {
     const std::vector<float>& values = layer(prefix + "RGB"[c]);
+    check_size(*this, values.size(), prefix + "RGB"[c]);
     for (std::size_t i = 0; i < values.size(); ++i) colors[3 * i + c] = values[i];
   }
   return colors;
@@ -99,6 +103,7 @@ double Picture::error(const Picture& reference, std::string_view metric) const {
                 fmt::format("the picture has {} x {} pixels, the reference {} x {}", width, height,
                             reference.width, reference.height));
   }
+  if (width == 0 || height == 0) throw Error(ErrorCode::usage, "the picture has no pixels");
   const metrics::Metric measured = metrics::parse_metric(metric);
   const metrics::Metric asked[] = {measured};
   return metrics::Reference(colors_of(reference), width, {}, asked)

@@ -2,7 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <utility>
+
 #include "core/error.h"
+#include "core/json_text.h"
 #include "formats/layout/metadata.h"
 #include "psf/dump.h"
 #include "psf/version.h"
@@ -23,6 +29,33 @@ formats::Type type_of(const Channel& channel) {
                                             channel.name, channel.type, names));
 }
 
+// What `more` says, with these cameras.
+std::string metadata_of(std::span<const Camera> cameras, const std::string& more) {
+  formats::Metadata metadata = more.empty() ? formats::Metadata() : formats::parse_metadata(more);
+  if (metadata.producer.empty()) metadata.producer = "psf library " PSF_VERSION;
+  const std::vector<formats::CameraInfo> before = std::exchange(metadata.cameras, {});
+  if (cameras.empty()) throw Error(ErrorCode::bad_input, "`cameras`: at least one is needed");
+  for (const Camera& camera : cameras) {
+    if (camera.width == 0 || camera.height == 0) {
+      throw Error(ErrorCode::bad_input, fmt::format("camera {}: {} x {} is no size for a picture",
+                                                    camera.name, camera.width, camera.height));
+    }
+    const auto same = std::find_if(before.begin(), before.end(),
+                                   [&](const auto& info) { return info.name == camera.name; });
+    formats::CameraInfo info = same != before.end() ? *same : formats::CameraInfo();
+    info.name = camera.name;
+    info.width = camera.width;
+    info.height = camera.height;
+    info.angle_per_pixel = camera.angle_per_pixel;
+    metadata.cameras.push_back(info);
+  }
+  // Keys that mean nothing to psf stay.
+  nlohmann::ordered_json all =
+      more.empty() ? nlohmann::ordered_json::object() : nlohmann::ordered_json::parse(more);
+  all.update(nlohmann::ordered_json::parse(formats::to_json(metadata)));
+  return core::json_text(all);
+}
+
 formats::Head head_of(std::span<const Camera> cameras, std::span<const Channel> channels,
                       const std::string& more) {
   formats::Head head;
@@ -32,23 +65,17 @@ formats::Head head_of(std::span<const Camera> cameras, std::span<const Channel> 
          static_cast<std::uint8_t>(std::min<std::size_t>(channel.components, 255)),
          channel.octahedral ? formats::Encoding::octahedral : formats::Encoding::plain});
   }
-  formats::Metadata metadata = more.empty() ? formats::Metadata() : formats::parse_metadata(more);
-  if (metadata.producer.empty()) metadata.producer = "psf library " PSF_VERSION;
-  for (const Camera& camera : cameras) {
-    formats::CameraInfo info;
-    info.name = camera.name;
-    info.width = camera.width;
-    info.height = camera.height;
-    info.angle_per_pixel = camera.angle_per_pixel;
-    metadata.cameras.push_back(info);
-  }
-  head.metadata = formats::to_json(metadata);
+  head.metadata = metadata_of(cameras, more);
   return head;
 }
 
 }  // namespace
 
 struct DumpWriter::State {
+  State(formats::Writer made, std::span<const Channel> all)
+      : writer(std::move(made)), channels(all.begin(), all.end()) {}
+
+  std::mutex mutex;
   formats::Writer writer;
   std::vector<Channel> channels;
 };
@@ -58,8 +85,7 @@ DumpWriter::DumpWriter(const std::string& path, std::span<const Camera> cameras,
   formats::WriterOptions chosen;
   chosen.codec = options.compress ? formats::Codec::zstd : formats::Codec::raw;
   state_ = std::make_unique<State>(
-      State{formats::Writer(path, head_of(cameras, channels, options.metadata), chosen),
-            std::vector<Channel>(channels.begin(), channels.end())});
+      formats::Writer(path, head_of(cameras, channels, options.metadata), chosen), channels);
 }
 DumpWriter::~DumpWriter() = default;
 DumpWriter::DumpWriter(DumpWriter&&) noexcept = default;
@@ -70,12 +96,15 @@ void DumpWriter::append(std::size_t count, std::span<const void* const> columns)
     throw Error(ErrorCode::usage, fmt::format("`columns`: {} of them, the dump has {} channels",
                                               columns.size(), state_->channels.size()));
   }
+  const std::lock_guard alone(state_->mutex);
   state_->writer.append(count, columns);
 }
 void DumpWriter::commit_pass() {
+  const std::lock_guard alone(state_->mutex);
   state_->writer.commit();
 }
 void DumpWriter::close() {
+  const std::lock_guard alone(state_->mutex);
   state_->writer.close();
 }
 const std::vector<Channel>& DumpWriter::channels() const {

@@ -27,18 +27,24 @@ psf::Parameters parameters_of(const Texts& given, bool no_weights) {
   return parameters.no_weights(no_weights);
 }
 
+// Calls at work, for the end of the interpreter.
+std::atomic<int> at_work{0};
+
 // Does long work without the interpreter lock, on a thread of its own: meanwhile this one looks for
-// ^C and hands on progress. What Python raises ends the work first.
+// ^C and hands on progress. What Python raises ends the work first: ^C ends all calls, what
+// `progress` raises ends this one.
 template <class Work>
 auto interruptible(const py::object& progress, const Work& work) {
   std::atomic<std::uint64_t> done{0}, total{0};
-  std::atomic<bool> finished{false};
+  std::atomic<bool> stopped{false}, finished{false};
   const auto on_progress = [&](std::uint64_t now, std::uint64_t all) {
+    if (stopped) throw psf::Error(psf::ErrorCode::interrupted, "stopped by what progress raised");
     total = all;
     done = now;
   };
   std::optional<decltype(work(on_progress))> result;
-  std::exception_ptr failed;
+  std::exception_ptr failed, raised;
+  ++at_work;
   std::thread worker([&] {
     try {
       result.emplace(work(on_progress));
@@ -47,29 +53,39 @@ auto interruptible(const py::object& progress, const Work& work) {
     }
     finished = true;
   });
-  std::exception_ptr raised;
+  bool by_signal = false;
   while (!finished) {
     {
       const py::gil_scoped_release released;
       std::this_thread::sleep_for(std::chrono::milliseconds(done == 0 ? 2 : 20));
     }
+    if (by_signal) psf::interrupt();  // another call may have cleared it
     if (raised) continue;
     try {
-      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      by_signal = PyErr_CheckSignals() != 0;
+      if (by_signal) throw py::error_already_set();
       if (!progress.is_none() && total > 0) progress(done.load(), total.load());
     } catch (...) {
       raised = std::current_exception();
-      psf::interrupt();
+      stopped = true;
     }
   }
   worker.join();
-  if (raised) {
-    psf::clear_interrupt();
-    std::rethrow_exception(raised);
-  }
+  --at_work;
+  if (by_signal) psf::clear_interrupt();
+  if (raised) std::rethrow_exception(raised);
   if (failed) std::rethrow_exception(failed);
   if (!progress.is_none() && total > 0) progress(total.load(), total.load());
   return std::move(*result);
+}
+
+// Threads that Python does not wait for end here, before the interpreter does.
+void end_all() {
+  const py::gil_scoped_release released;
+  while (at_work > 0) {
+    psf::interrupt();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
 }
 
 // An array with the vector's memory, which it keeps.
@@ -80,9 +96,9 @@ py::array_t<T> adopt(std::vector<T>&& values, const std::vector<py::ssize_t>& sh
   return py::array_t<T>(shape, kept->data(), owner);
 }
 
-// The values of an array of n rows; an array of another type or order is copied.
+// The values of a column, of the right type and shape: __init__.py sees to it.
 template <class T>
-using Column = std::optional<py::array_t<T, py::array::c_style | py::array::forcecast>>;
+using Column = std::optional<py::array_t<T, py::array::c_style>>;
 template <class T>
 std::span<const T> span_of(const Column<T>& column) {
   if (!column) return {};
@@ -147,6 +163,7 @@ PYBIND11_MODULE(_psf, m) {
   m.attr("version") = PSF_VERSION;
   static const py::exception<psf::Error> kError(m, "Error");
   py::register_exception_translator(translate);
+  py::module_::import("atexit").attr("register")(py::cpp_function(end_all));
 
   m.def("parameters", [] {
     std::vector<std::tuple<std::string, std::string, std::string, std::string>> all;

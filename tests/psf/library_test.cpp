@@ -207,6 +207,10 @@ TEST_CASE("mistakes are errors that name what is wrong") {
   CHECK_THROWS_WITH(
       psf::filter_records(plane.records(), kAbove, psf::Parameters().set("material", "on")),
       Catch::Matchers::Contains("material"));
+  psf::Picture picture = psf::filter_records(plane.records(), kAbove).pictures[0];
+  picture.layers[0].values.push_back(1);
+  CHECK_THROWS_WITH(picture.rgb(), StartsWith("the layer R has 577 values"));
+  CHECK_THROWS_WITH(psf::Picture().error(psf::Picture()), StartsWith("the picture has no pixels"));
   const TempFolder folder;
   const std::vector<psf::Channel> odd = {{"position", "f31", 3}};
   CHECK_THROWS_WITH(psf::DumpWriter(folder / "a.pvb", kAbove, odd),

@@ -141,15 +141,30 @@ class Package(unittest.TestCase):
                 writer.append(**columns, **{"my.code": np.full((8, 2), k)})
                 writer.commit_pass()
             self.assertEqual((writer.passes, writer.records), (3, 24))
+            writer.close()  # and the end of the block does not close it again
         dump = psf.open(path)
         self.assertTrue(dump.closed)
         self.assertEqual(dump.metadata["scene"], "made")
         self.assertTrue(np.array_equal(dump["my.code"][16:], np.full((8, 2), 2)))
         self.assertTrue(np.array_equal(dump["position"][8:16], x.astype(np.float32)))
-        with self.assertRaisesRegex(ValueError, "distance has 7 values"):
-            with psf.create(self.file("x.pvb"), [camera], channels) as writer:
-                writer.append(**{**columns, "distance": np.ones(7), "my.code": np.ones((8, 2))})
+        for name, wrong in (("distance", np.ones(7)), ("position", np.ones((3, 8))),
+                            ("pixel", np.full(8, 1 << 32)), ("pixel", np.full(8, -1)),
+                            ("pixel", np.full(8, 0.5))):
+            with self.assertRaisesRegex(ValueError, name):
+                with psf.create(self.file("x.pvb"), [camera], channels) as writer:
+                    writer.append(**{**columns, "my.code": np.ones((8, 2)), name: wrong})
         self.assertFalse(os.path.exists(self.file("x.pvb")))
+        # Another byte order is no other value; metadata of another dump are kept, its cameras once.
+        with psf.create(self.file("x.pvb"), dump_cameras := psf.open(path).cameras,
+                        {name: (">" + kind[0], kind[1]) if isinstance(kind, tuple) else ">" + kind
+                         for name, kind in channels.items()},
+                        metadata={**psf.open(path).metadata, "mine": 7}) as writer:
+            writer.append(**columns, **{"my.code": np.ones((8, 2))})
+            writer.commit_pass()
+        copy = psf.open(self.file("x.pvb"))
+        self.assertTrue(np.array_equal(copy["position"][:], x.astype(np.float32)))
+        self.assertEqual((copy.metadata["mine"], copy.metadata["scene"]), (7, "made"))
+        self.assertEqual(len(copy.cameras), len(dump_cameras))
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
             dump.filter(r0="1px")
@@ -172,6 +187,62 @@ class Package(unittest.TestCase):
             self.assertIn(text, str(raised.exception))
             self.assertNotIn("\n", str(raised.exception))
             self.assertNotIn("`", str(raised.exception))
+
+    def test_numbers_of_numpy_are_numbers(self) -> None:
+        dump = psf.open(self.path)
+        picture = dump.filter(iterations=np.int64(2), normal=np.False_, demodulate=np.True_)
+        same = dump.filter(iterations=2, normal=None, demodulate=True)
+        self.assertTrue(np.array_equal(picture.rgb, same.rgb))
+        rows = dump.sweep(self.reference, metrics="MSE", hit_distance=np.float64(0.5))
+        self.assertEqual((len(rows), rows[0]["hit_distance"]), (1, "0.5"))
+        last = dump.filter(passes=slice(-2, None))
+        self.assertTrue(np.array_equal(last.rgb, dump.filter(passes=slice(2, 4)).rgb))
+        for wrong in (-1, slice(0, 4, 2)):
+            with self.assertRaises(ValueError):
+                dump.filter(passes=wrong)
+        with self.assertRaisesRegex(KeyError, "has no camera nobody"):
+            dump.filter("nobody")
+
+    def test_records_of_another_shape_are_refused(self) -> None:
+        camera = psf.Camera("above", 2, 2, 0.1)
+        columns = dict(position=np.zeros((4, 3)), throughput=np.ones((4, 3)),
+                       contribution=np.ones((4, 3)), pixel=np.arange(4), distance=np.ones(4))
+        result = psf.filter_records(cameras=[camera], **columns)
+        self.assertTrue((result.c_bar == 1).all())
+        for name, wrong in (("position", np.zeros((3, 4))), ("distance", np.ones((4, 1))),
+                            ("visibility", np.full(4, 1 << 32)), ("flags", np.full(4, 256))):
+            with self.assertRaisesRegex(ValueError, name):
+                psf.filter_records(cameras=[camera], **{**columns, name: wrong})
+        for cameras, code in (([], 2), ([psf.Camera("none", 0, 0)], 3)):
+            with self.assertRaises(psf.Error) as raised:
+                psf.filter_records(cameras=cameras, **columns)
+            self.assertEqual(raised.exception.code, code)
+        with self.assertRaisesRegex(psf.Error, "estimator disk"):
+            psf.filter_records(cameras=[psf.Camera("flat", 2, 2)], **columns,
+                               parameters={"r0": "1wu", "estimator": "disk"}, no_weights=True,
+                               normal=np.ones((4, 3)), direction=np.ones((4, 3)))
+
+    def test_a_dump_is_not_refreshed_while_it_is_read(self) -> None:
+        dump = psf.open(self.path)
+        refused = []
+
+        def refresh(done: int, total: int) -> None:
+            try:
+                dump.refresh()
+            except psf.Error as error:
+                refused.append(error.code)
+
+        dump.filter(block="2^6", r0="64px", no_weights=True, progress=refresh)
+        self.assertEqual(set(refused) | {2}, {2})
+        self.assertFalse(dump.refresh())
+
+    def test_a_thread_that_nobody_waits_for_ends_with_the_program(self) -> None:
+        program = ("import sys, threading, time; sys.path.insert(0, sys.argv[1]); import psf; "
+                   "work = lambda: [psf.open(sys.argv[2]).filter(r0='64px') for _ in range(999)]; "
+                   "threading.Thread(target=work, daemon=True).start(); time.sleep(0.2)")
+        ended = subprocess.run([sys.executable, "-B", "-c", program, PACKAGE, self.path],
+                               capture_output=True, text=True)
+        self.assertEqual((ended.returncode, ended.stdout), (0, ""))
 
     def test_progress_is_said_and_what_it_raises_ends_the_work(self) -> None:
         dump = psf.open(self.path)

@@ -10,12 +10,12 @@
 #include <type_traits>
 #include <utility>
 
+#include "build_info.h"
 #include "core/error.h"
 #include "core/output_file.h"
 #include "film/image.h"
 #include "option_values.h"
 #include "render/loop/recorder.h"
-#include "version.h"
 
 namespace psf::tools {
 namespace {
@@ -219,7 +219,8 @@ void add_render_options(CLI::App& app, RenderOptions& options) {
   app.option_defaults()->group("General");
   add_common(app, options.common);
   app.set_help_flag("-h,--help", "print this and exit");
-  app.set_version_flag("--version", std::string("psf-render ") + kVersion, "print it and exit");
+  app.set_version_flag(
+      "--version", [] { return version_text("psf-render"); }, "print it and exit");
   wrap_descriptions(app);
 }
 

@@ -1,12 +1,15 @@
 // psf: offline path space filtering of path-vertex buffers.
+#include "build_info.h"
 #include "cli.h"
+#include "filter/engine/instruction_sets.h"
 #include "verbs.h"
-#include "version.h"
 
 int main(int argc, char** argv) {
   CLI::App app(
       "Path space filtering, offline: filters, checks and compares what a renderer dumped.", "psf");
-  app.set_version_flag("--version", std::string("psf ") + psf::tools::kVersion);
+  app.set_version_flag("--version", [] {
+    return psf::tools::version_text("psf", psf::filter::engine::instruction_set());
+  });
   app.require_subcommand(1);
   psf::tools::set_example(app, "psf filter scene.pvb -o filtered.exr");
   psf::tools::add_filter(app);

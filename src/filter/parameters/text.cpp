@@ -17,6 +17,7 @@ namespace {
 template <typename T>
 std::optional<T> number(std::string_view text) {
   T value{};
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || text.empty()) return std::nullopt;
   return value;

@@ -68,6 +68,8 @@ def geomspace(first: float, last: float, count: int, unit: str = "px") -> list[s
 
 
 def _text(value: Value) -> str:
+    if isinstance(value, np.generic):
+        value = value.item()
     if value is None or value is False:
         return "off"
     if value is True:
@@ -80,17 +82,41 @@ def _texts(given: Mapping[str, Value]) -> dict[str, str]:
 
 
 def _list(value: Value | Iterable[Value]) -> list[Value]:
-    if value is None or isinstance(value, (str, float, int)):
+    if value is None or isinstance(value, (str, float, int, np.generic)):
         return [value]
     return list(value)
 
 
-def _range(passes: Passes) -> tuple[int, int | None]:
+def _range(passes: Passes, all: int) -> tuple[int, int | None]:
     if isinstance(passes, slice):
-        if passes.step not in (None, 1):
+        first, last, step = passes.indices(all)
+        if step != 1:
             raise ValueError("passes: a slice first:last, without a step")
-        return passes.start or 0, passes.stop
+        # Beyond the end is an error of the library, not a shorter slice.
+        beyond = passes.stop is not None and passes.stop > all
+        return first, passes.stop if beyond else last
+    if passes is not None and passes < 0:
+        raise ValueError(f"passes: {passes} is no number of passes")
     return 0, passes
+
+
+def _column(name: str, values: npt.ArrayLike | None, dtype: str, components: int,
+            count: int | None) -> npt.NDArray[Any] | None:
+    """An array of the type and shape of a channel; what fits is not copied."""
+    if values is None:
+        return None
+    given = np.asarray(values)
+    wanted = np.dtype(dtype)
+    if given.dtype.kind not in "biuf":
+        raise TypeError(f"{name}: {given.dtype} is no type of numbers")
+    array = np.ascontiguousarray(given, dtype=wanted)
+    rows = len(array) if count is None else count
+    expected = (rows,) if components == 1 else (rows, components)
+    if array.shape != expected:
+        raise ValueError(f"{name}: shape {given.shape}, expected {expected}")
+    if wanted.kind == "u" and given.dtype != wanted and not np.array_equal(array, given):
+        raise ValueError(f"{name}: a value does not fit into {wanted}")
+    return array
 
 
 class Picture:
@@ -261,7 +287,7 @@ class Dump:
                    no_weights: bool = False, progress: Progress | None = None,
                    **parameters: Value) -> list[Picture]:
         """What ``psf filter`` does: a picture of every camera."""
-        first, last = _range(passes)
+        first, last = _range(passes, self.passes)
         result = self._dump.filter(_texts(parameters), no_weights, first, last, max_memory, progress)
         for note in result.notes:
             warnings.warn(note.replace("`", ""), stacklevel=3)
@@ -271,15 +297,14 @@ class Dump:
                max_memory: int | None = None, no_weights: bool = False,
                progress: Progress | None = None, **parameters: Value) -> Picture:
         """What ``psf filter`` does: the picture of a camera, the first unless named."""
+        if camera is not None and camera not in [one.name for one in self.cameras]:
+            raise KeyError(f"{self.path}: has no camera {camera}")
         pictures = self.filter_all(passes=passes, max_memory=max_memory, no_weights=no_weights,
                                    progress=progress, **parameters)
-        for picture in pictures:
-            if camera in (None, picture.camera):
-                return picture
-        raise KeyError(f"{self.path}: has no camera {camera}")
+        return next(one for one in pictures if camera in (None, one.camera))
 
-    def sweep(self, reference: Picture | str, *, metrics: Sequence[str] = ("relMSE",),
-              camera: int = 0, passes: Passes = None, max_memory: int | None = None,
+    def sweep(self, reference: Picture | str, *, metrics: str | Sequence[str] = "relMSE",
+              camera: str | None = None, passes: Passes = None, max_memory: int | None = None,
               no_weights: bool = False, progress: Progress | None = None,
               **lists: Value | Iterable[Value]) -> list[dict[str, Any]]:
         """What ``psf sweep`` does: a row for each combination of the parameters' values.
@@ -292,9 +317,12 @@ class Dump:
             reference = read_picture(reference)
         values = [_list(value) for value in lists.values()]
         sets = [_texts(dict(zip(lists, combination))) for combination in itertools.product(*values)]
-        first, last = _range(passes)
-        return self._dump.sweep(reference._picture, sets, no_weights, list(metrics), first, last,
-                                max_memory, camera, progress)
+        first, last = _range(passes, self.passes)
+        names = [metrics] if isinstance(metrics, str) else list(metrics)
+        number = [one.name for one in self.cameras].index(camera) if camera is not None else 0
+        rows = self._dump.sweep(reference._picture, sets, no_weights, names, first, last, max_memory,
+                                number, progress)
+        return [{name.replace("-", "_"): value for name, value in row.items()} for row in rows]
 
     def __repr__(self) -> str:
         return f"<psf.Dump {self.path}: {self.passes} passes, {self.records} records>"
@@ -332,10 +360,21 @@ def filter_records(*, cameras: Sequence[Camera], position: npt.ArrayLike,
     ``n``: samples per pixel accumulated up to the end of the block, for radii that shrink; 0: those
     of the records.
     """
+    count = len(np.asarray(pixel))
+
+    def column(name: str, values: npt.ArrayLike | None, dtype: str, components: int = 1) -> Any:
+        return _column(name, values, dtype, components, count)
+
     c_bar, neighbors, radius, pictures = _psf.filter_records(
-        list(cameras), _texts(parameters), no_weights, n, position, throughput, contribution, pixel,
-        distance, unfiltered, normal, reflectance, direction, hit_distance, roughness, visibility,
-        material, camera, flags)
+        list(cameras), _texts(parameters), no_weights, n,
+        column("position", position, "f4", 3), column("throughput", throughput, "f4", 3),
+        column("contribution", contribution, "f4", 3), column("pixel", pixel, "u4"),
+        column("distance", distance, "f4"), column("unfiltered", unfiltered, "f4", 3),
+        column("normal", normal, "f4", 3), column("reflectance", reflectance, "f4", 3),
+        column("direction", direction, "f4", 3), column("hit_distance", hit_distance, "f4"),
+        column("roughness", roughness, "f4"), column("visibility", visibility, "u4"),
+        column("material", material, "u4"), column("camera", camera, "u2"),
+        column("flags", flags, "u1"))
     return FilteredRecords(c_bar, neighbors, radius, [Picture(picture) for picture in pictures])
 
 
@@ -347,11 +386,13 @@ class DumpWriter:
                  metadata: Mapping[str, Any] | None = None, compress: bool = True) -> None:
         self._rows: list[tuple[str, np.dtype[Any], int]] = []
         for name, kind in channels.items():
-            components = kind[1] if isinstance(kind, tuple) else 1
-            self._rows.append((name, np.dtype(kind[0] if isinstance(kind, tuple) else kind), components))
+            name_of_type, components = kind if isinstance(kind, tuple) else (kind, 1)
+            # The format is little-endian.
+            self._rows.append((name, np.dtype(name_of_type).newbyteorder("<"), components))
         kinds = [(name, f"{dtype.kind}{8 * dtype.itemsize}", components, False)
                  for name, dtype, components in self._rows]
-        self._writer = _psf.DumpWriter(path, list(cameras), kinds, compress,
+        self._closed = False
+        self._writer: _psf.DumpWriter | None = _psf.DumpWriter(path, list(cameras), kinds, compress,
                                        json.dumps(dict(metadata)) if metadata else "")
 
     def append(self, **columns: npt.ArrayLike) -> None:
@@ -360,41 +401,46 @@ class DumpWriter:
         unknown = [name for name in columns if name not in [row[0] for row in self._rows]]
         if missing or unknown:
             raise ValueError(f"append: missing {missing}, unknown {unknown}")
-        arrays, count = [], -1
+        arrays: list[npt.NDArray[Any]] = []
         for name, dtype, components in self._rows:
-            array = np.ascontiguousarray(columns[name], dtype=dtype)
-            rows = array.size // components
-            if array.size != rows * components or count not in (-1, rows):
-                raise ValueError(f"append: {name} has {array.size} values, expected {components} "
-                                 f"for each of {max(count, rows)} records")
-            count = rows
+            count = len(arrays[0]) if arrays else None
+            array = _column(name, columns[name], dtype.str, components, count)
+            assert array is not None
             arrays.append(array)
-        self._writer.append(count, arrays)
+        self._open().append(len(arrays[0]), arrays)
+
+    def _open(self) -> _psf.DumpWriter:
+        if self._writer is None:
+            raise ValueError("the dump was given up after an error")
+        return self._writer
 
     def commit_pass(self) -> None:
         """Ends a pass: what was appended is in the file."""
-        self._writer.commit_pass()
+        self._open().commit_pass()
 
     def close(self) -> None:
         """Says that there is nothing to come."""
-        self._writer.close()
+        self._open().close()
+        self._closed = True
 
     @property
     def records(self) -> int:
         """How many are committed."""
-        return self._writer.records
+        return self._open().records
 
     @property
     def passes(self) -> int:
         """How many are committed."""
-        return self._writer.passes
+        return self._open().passes
 
     def __enter__(self) -> DumpWriter:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, value: BaseException | None,
                  trace: TracebackType | None) -> None:
-        if kind is None:
+        if kind is not None:
+            self._writer = None  # the file is no longer being written
+        elif not self._closed:
             self.close()
 
 
