@@ -17,6 +17,13 @@ inline int& skipped_cases() {
 
 }  // namespace psf::tests
 
+// Version 3's name.
+namespace Catch::Matchers {
+inline auto ContainsSubstring(const std::string& text) {
+  return Contains(text);
+}
+}  // namespace Catch::Matchers
+
 // Version 3's: ends a test case that cannot be tried on this machine.
 #define SKIP(why)                  \
   do {                             \
