@@ -112,7 +112,6 @@ Space fitting_space(const Scene& scene) {
   const Imath::Box3d box = bounds_of(scene);
   Space space = moved_space(scene.space, box);
   if (box.isEmpty() || !(space == scene.space)) return space;
-  const Imath::V3d center = box.center();
   const double half = largest(box.size()) / 2;
   const int size = half > 0 ? std::ilogb(half) : kMiddle;
   if (size < kSmall || size > kLarge) {
