@@ -32,7 +32,7 @@ Ranges ranges_of(std::size_t count, std::size_t grain, std::size_t threads) {
 
 }  // namespace
 
-TEST_CASE("ranges cover [0, count) without gap or overlap, whatever the threads") {
+TEST_CASE("ranges cover all from 0 to count without gap or overlap, whatever the threads") {
   for (const std::size_t count : {0u, 1u, 7u, 8u, 9u, 1000u}) {
     const Ranges one = ranges_of(count, 8, 1);
     std::size_t at = 0;

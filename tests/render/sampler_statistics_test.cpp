@@ -34,7 +34,7 @@ float dimension_of(Sampler sampler, int dimension) {
 
 }  // namespace
 
-TEST_CASE("numbers lie in [0, 1), also the largest") {
+TEST_CASE("numbers are from 0 to below 1, also the largest") {
   CHECK(to_unit(0xffffffffu) < 1.0f);
   CHECK(to_unit(0) == 0.0f);
   for (const SamplerKind kind : kKinds) {
