@@ -45,6 +45,8 @@ void write_exr(const std::string& path, const Image& image);
 // Writes the channels R, G and B as an 8-bit PNG: times 2^exposure, through tone_map() and
 // srgb_from_linear() of display.h.
 void write_png(const std::string& path, const Image& image, float exposure = 0);
+// The bytes of the file that write_png() writes.
+[[nodiscard]] std::vector<std::uint8_t> encode_png(const Image& image, float exposure = 0);
 // Writes (height, width, 3) sRGB values as an 8-bit PNG. Throws Error{io}.
 void write_png_bytes(const std::string& path, std::size_t width, std::size_t height,
                      std::span<const std::uint8_t> bytes);

@@ -10,8 +10,10 @@
 #include "film/image.h"
 
 namespace psf::film {
+namespace {
 
-void write_png(const std::string& path, const Image& image, float exposure) {
+// (height, width, 3) sRGB.
+std::vector<std::uint8_t> displayed(const Image& image, float exposure) {
   const std::vector<Rgb> colors = image.rgb();
   const float scale = std::exp2(exposure);
   std::vector<std::uint8_t> bytes;
@@ -22,18 +24,41 @@ void write_png(const std::string& path, const Image& image, float exposure) {
       bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * shown)));
     }
   }
-  write_png_bytes(path, image.width, image.height, bytes);
+  return bytes;
+}
+
+png_image described(std::size_t width, std::size_t height) {
+  png_image picture = {};
+  picture.version = PNG_IMAGE_VERSION;
+  picture.width = static_cast<png_uint_32>(width);
+  picture.height = static_cast<png_uint_32>(height);
+  picture.format = PNG_FORMAT_RGB;
+  return picture;
+}
+
+}  // namespace
+
+void write_png(const std::string& path, const Image& image, float exposure) {
+  write_png_bytes(path, image.width, image.height, displayed(image, exposure));
+}
+
+std::vector<std::uint8_t> encode_png(const Image& image, float exposure) {
+  const std::vector<std::uint8_t> bytes = displayed(image, exposure);
+  png_image picture = described(image.width, image.height);
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(picture);
+  std::vector<std::uint8_t> file(size);
+  if (png_image_write_to_memory(&picture, file.data(), &size, 0, bytes.data(), 0, nullptr) == 0) {
+    throw Error(ErrorCode::io, std::string("cannot encode the picture: ") + picture.message);
+  }
+  file.resize(size);
+  return file;
 }
 
 void write_png_bytes(const std::string& path, std::size_t width, std::size_t height,
                      std::span<const std::uint8_t> bytes) {
   assert(bytes.size() == 3 * width * height);
   core::OutputFile file(path);
-  png_image picture = {};
-  picture.version = PNG_IMAGE_VERSION;
-  picture.width = static_cast<png_uint_32>(width);
-  picture.height = static_cast<png_uint_32>(height);
-  picture.format = PNG_FORMAT_RGB;
+  png_image picture = described(width, height);
   if (png_image_write_to_file(&picture, file.temporary_path().c_str(), 0, bytes.data(), 0,
                               nullptr) == 0) {
     throw Error(ErrorCode::io, path + ": cannot write the picture: " + picture.message);

@@ -49,10 +49,10 @@ Blocks::Blocks(const BlockSize& size, std::vector<std::uint64_t> pass_bounds,
   } else {
     for (std::uint64_t k = 0; k < count_; ++k) longest = std::max(longest, (*this)[k].size());
   }
-  if (longest > std::uint64_t{std::numeric_limits<std::int32_t>::max()}) {
-    throw Error(ErrorCode::limit,
-                "`block`: a block has " + std::to_string(longest) +
-                    " paths, 2147483647 are the most; choose a smaller block or fewer passes");
+  if (longest > kMostPaths) {
+    throw Error(ErrorCode::limit, "`block`: a block has " + std::to_string(longest) + " paths, " +
+                                      std::to_string(kMostPaths) +
+                                      " are the most; choose a smaller block or fewer passes");
   }
 }
 

@@ -9,6 +9,8 @@
 
 namespace psf::filter {
 
+inline constexpr std::uint64_t kMostPaths = (std::uint64_t{1} << 31) - 1;  // of a block
+
 struct PathRange {
   std::uint64_t first = 0, last = 0;  // [first, last)
   [[nodiscard]] std::uint64_t size() const { return last - first; }

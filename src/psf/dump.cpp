@@ -90,8 +90,8 @@ FilterResult Dump::filter(const Parameters& parameters, const FilterOptions& opt
   run::FilterRequest request;
   request.parameters = to_filter(parameters);
   FilterResult result;
-  const std::string note =
-      run::switch_off_missing(state_->dump, {&request.parameters, 1}, asked_terms(parameters));
+  const std::string note = run::switch_off_missing(state_->dump, {&request.parameters, 1},
+                                                   filter::asked_terms(parameters.given()));
   if (!note.empty()) result.notes.push_back(note);
   request.passes.first = static_cast<std::size_t>(options.passes.first);
   if (options.passes.last) request.passes.last = static_cast<std::size_t>(*options.passes.last);
@@ -139,7 +139,8 @@ std::vector<SweepRow> Dump::sweep(const Picture& reference, std::span<const Para
   std::vector<filter::Parameters> rows;
   for (const Parameters& set : sets) {
     rows.push_back(to_filter(set));
-    static_cast<void>(run::switch_off_missing(state_->dump, {&rows.back(), 1}, asked_terms(set)));
+    static_cast<void>(
+        run::switch_off_missing(state_->dump, {&rows.back(), 1}, filter::asked_terms(set.given())));
   }
   std::vector<SweepRow> result(rows.size());
   study::SweepRequest request;

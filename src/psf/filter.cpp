@@ -8,7 +8,9 @@
 
 #include "core/error.h"
 #include "filter/average.h"
+#include "filter/blocks.h"
 #include "filter/channels.h"
+#include "filter/places.h"
 #include "filter/radius.h"
 #include "psf/library.h"
 #include "run/pictures.h"
@@ -71,37 +73,34 @@ class Columns {
 
 // As of a dump: sizes that a picture can have.
 void check_cameras(std::span<const Camera> cameras, std::size_t records) {
-  constexpr std::uint64_t kMostPixels = std::uint64_t{1} << 32;
-  constexpr std::size_t kMostRecords = (std::size_t{1} << 31) - 1;
   if (cameras.empty()) throw Error(ErrorCode::usage, "`cameras`: at least one is needed");
   std::uint64_t pixels = 0;
   for (const Camera& camera : cameras) {
     const std::uint64_t own = std::uint64_t{camera.width} * camera.height;
-    if (own == 0 || own > kMostPixels - pixels) {
+    if (own == 0 || own > filter::kMostPixels - pixels) {
       throw Error(ErrorCode::bad_input, fmt::format("camera {}: {} x {} is no size for a picture",
                                                     camera.name, camera.width, camera.height));
     }
     pixels += own;
   }
-  if (records > kMostRecords) {
+  if (records > filter::kMostPaths) {
     throw Error(ErrorCode::limit, fmt::format("{} records are more than a block may have, {}",
-                                              records, kMostRecords));
+                                              records, filter::kMostPaths));
   }
 }
 
-void check_places(const filter::Records& records, std::span<const Camera> cameras) {
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    const std::size_t camera = records.camera.empty() ? 0 : records.camera[i];
-    if (camera >= cameras.size()) {
-      throw Error(ErrorCode::bad_input, fmt::format("record {}: there is no camera {}", i, camera));
-    }
-    const std::uint64_t pixels = std::uint64_t{cameras[camera].width} * cameras[camera].height;
-    if (records.pixel[i] < pixels) continue;
-    throw Error(
-        ErrorCode::bad_input,
-        fmt::format("record {}: pixel {} of camera {}, which has {} x {}", i, records.pixel[i],
-                    camera, cameras[camera].width, cameras[camera].height));
+void check_places(const filter::Records& records, std::span<const filter::CameraView> cameras) {
+  const std::optional<std::size_t> i =
+      filter::first_misplaced(records.pixel, records.camera, cameras);
+  if (!i) return;
+  const std::size_t camera = records.camera.empty() ? 0 : records.camera[*i];
+  if (camera >= cameras.size()) {
+    throw Error(ErrorCode::bad_input, fmt::format("record {}: there is no camera {}", *i, camera));
   }
+  throw Error(
+      ErrorCode::bad_input,
+      fmt::format("record {}: pixel {} of camera {}, which has {} x {}", *i, records.pixel[*i],
+                  camera, cameras[camera].width, cameras[camera].height));
 }
 
 // What radii need beside the channels of the weights.
@@ -136,7 +135,7 @@ FilteredRecords filter_records(const Records& records, std::span<const Camera> c
   const filter::Records view = columns.view();
   const filter::Parameters chosen = [&] {
     filter::Parameters p = to_filter(parameters);
-    const filter::TermSet asked = asked_terms(parameters);
+    const filter::TermSet asked = filter::asked_terms(parameters.given());
     for (const filter::ChannelNeed& need : filter::optional_channels(p)) {
       if (need.term && (asked & filter::bit(*need.term)) == 0 &&
           !filter::has_channel(view, need.channel)) {
@@ -145,7 +144,6 @@ FilteredRecords filter_records(const Records& records, std::span<const Camera> c
     }
     return p;
   }();
-  check_places(view, cameras);
   check_radius(chosen, view, cameras);
 
   std::vector<filter::CameraView> views;
@@ -154,6 +152,7 @@ FilteredRecords filter_records(const Records& records, std::span<const Camera> c
     views.push_back({camera.width, camera.height, camera.angle_per_pixel});
     pixels += static_cast<double>(camera.width) * camera.height;
   }
+  check_places(view, views);
   const double samples = std::max(1.0, static_cast<double>(columns.size()) / pixels);
   // One block, the first.
   const double counted = chosen.radius.count == filter::RadiusCount::blocks ? 1 : samples;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "film/image.h"
-#include "filter/parameters/parameters.h"
+#include "filter/parameters/text.h"
 #include "psf/parameters.h"
 #include "psf/picture.h"
 
@@ -15,8 +15,6 @@ namespace psf {
 
 // Throws Error{usage} where the values do not go together.
 [[nodiscard]] filter::Parameters to_filter(const Parameters& parameters);
-// The weights that were set.
-[[nodiscard]] filter::TermSet asked_terms(const Parameters& parameters);
 
 [[nodiscard]] Picture to_picture(film::Image image, const std::string& camera);
 // The colours of a picture, (height, width).

@@ -18,11 +18,7 @@ Parameters& Parameters::no_weights(bool off) {
 }
 
 std::string Parameters::get(std::string_view name) const {
-  const filter::Parameter& parameter = filter::find_parameter(name);
-  filter::Parameters all;
-  if (no_weights_) all.weights = filter::WeightTerms::none();
-  for (const auto& [given, text] : given_) filter::set_parameter(all, given, text);
-  return parameter.text(all);
+  return filter::find_parameter(name).text(filter::parameters_of({given_, no_weights_}));
 }
 
 std::vector<ParameterHelp> Parameters::help() {
@@ -35,20 +31,9 @@ std::vector<ParameterHelp> Parameters::help() {
 }
 
 filter::Parameters to_filter(const Parameters& parameters) {
-  filter::Parameters all;
-  if (parameters.has_no_weights()) all.weights = filter::WeightTerms::none();
-  for (const auto& [name, text] : parameters.given()) filter::set_parameter(all, name, text);
+  filter::Parameters all = filter::parameters_of({parameters.given(), parameters.has_no_weights()});
   all.validate();
   return all;
-}
-
-filter::TermSet asked_terms(const Parameters& parameters) {
-  filter::TermSet asked = 0;
-  for (const auto& [name, text] : parameters.given()) {
-    const std::optional<filter::Term> term = filter::find_parameter(name).term;
-    if (term) asked |= filter::bit(*term);
-  }
-  return asked;
 }
 
 }  // namespace psf

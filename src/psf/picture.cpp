@@ -2,11 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/error.h"
-#include "film/display.h"
 #include "film/picture.h"
 #include "metrics/metrics.h"
 #include "metrics/reference.h"
@@ -72,14 +68,8 @@ std::vector<float> Picture::rgb(const std::string& prefix) const {
   return colors;
 }
 
-std::vector<unsigned char> Picture::displayed(float exposure) const {
-  const float scale = std::exp2(exposure);
-  std::vector<unsigned char> bytes;
-  for (const float value : rgb()) {
-    const float shown = film::srgb_from_linear(film::tone_map(value * scale));
-    bytes.push_back(static_cast<unsigned char>(std::lround(255 * std::clamp(shown, 0.0f, 1.0f))));
-  }
-  return bytes;
+std::vector<unsigned char> Picture::png(float exposure) const {
+  return film::encode_png(to_image(*this), exposure);
 }
 
 void Picture::save(const std::string& path) const {

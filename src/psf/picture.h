@@ -26,8 +26,8 @@ struct PSF_API Picture {
   [[nodiscard]] const std::vector<float>& layer(std::string_view name) const;
   // The colours of the layers R, G and B behind `prefix`, (height, width, 3), linear.
   [[nodiscard]] std::vector<float> rgb(const std::string& prefix = "") const;
-  // sRGB bytes (height, width, 3) to look at: times 2^exposure, tone-mapped as the PNGs are.
-  [[nodiscard]] std::vector<unsigned char> displayed(float exposure = 0) const;
+  // The bytes of a PNG to look at: times 2^exposure, tone-mapped; those of save() at exposure 0.
+  [[nodiscard]] std::vector<unsigned char> png(float exposure = 0) const;
 
   // Writes an EXR with all layers and attributes, or a PNG to look at, by the extension. The file
   // appears whole or not at all. Throws Error{io}, Error{usage} for another extension.

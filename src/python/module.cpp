@@ -227,11 +227,10 @@ PYBIND11_MODULE(_psf, m) {
                                                static_cast<py::ssize_t>(picture.width), 3});
           },
           py::arg("prefix") = "")
-      .def("displayed",
+      .def("png",
            [](const psf::Picture& picture, float exposure) {
-             return adopt(picture.displayed(exposure),
-                          {static_cast<py::ssize_t>(picture.height),
-                           static_cast<py::ssize_t>(picture.width), 3});
+             const std::vector<unsigned char> file = picture.png(exposure);
+             return py::bytes(reinterpret_cast<const char*>(file.data()), file.size());
            })
       .def("save", &psf::Picture::save, py::call_guard<py::gil_scoped_release>())
       .def_static("read", &psf::Picture::read, py::arg("path"), py::arg("layer") = "",

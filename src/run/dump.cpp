@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "filter/places.h"
 #include "formats/layout/channels.h"
 
 namespace psf::run {
@@ -17,11 +18,6 @@ using formats::Type;
 
 static_assert(sizeof(Vec3) == 3 * sizeof(float) && sizeof(Rgb) == 3 * sizeof(float),
               "columns of vectors are read as rows of 3 floats");
-
-// Largest picture of all cameras together; a damaged size must not become an allocation.
-constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 32;
-
-constexpr std::size_t kCheckGrain = 65536;  // records a range
 
 std::span<float> as_floats(std::vector<float>& column) {
   return column;
@@ -59,7 +55,7 @@ Dump::Dump(const std::string& path) : reader_(path), metadata_(metadata_of(reade
   }
   for (const formats::CameraInfo& camera : metadata_.cameras) {
     if (camera.width == 0 || camera.height == 0 ||
-        std::uint64_t{camera.width} * camera.height > kMaxPixels - pixels_) {
+        std::uint64_t{camera.width} * camera.height > filter::kMostPixels - pixels_) {
       throw Error(ErrorCode::bad_input,
                   fmt::format("{}: {}: {} x {} is no size for a picture", path, called(camera),
                               camera.width, camera.height));
@@ -183,26 +179,10 @@ void Dump::read(const filter::PathRange& range, const ChannelSet& channels,
 }
 
 void Dump::check_pixels(const filter::PathRange& range, const BlockRecords& records) const {
-  const auto camera_of = [&records](std::size_t i) -> std::size_t {
-    return records.camera.empty() ? 0 : records.camera[i];
-  };
-  const auto is_good = [&](std::size_t i) {
-    const std::size_t camera = camera_of(i);
-    return camera < cameras_.size() &&
-           records.pixel[i] < std::uint64_t{cameras_[camera].width} * cameras_[camera].height;
-  };
-  const std::size_t count = records.pixel.size();
-  std::vector<std::size_t> bad(core::range_count(count, kCheckGrain), count);  // the first a range
-  core::parallel_for(count, kCheckGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (is_good(i)) continue;
-      bad[begin / kCheckGrain] = i;
-      return;
-    }
-  });
-  const auto first = std::find_if(bad.begin(), bad.end(), [&](std::size_t i) { return i < count; });
-  if (first == bad.end()) return;
-  const std::size_t i = *first, camera = camera_of(i);
+  const std::optional<std::size_t> first =
+      filter::first_misplaced(records.pixel, records.camera, cameras_);
+  if (!first) return;
+  const std::size_t i = *first, camera = records.camera.empty() ? 0 : records.camera[i];
   if (camera >= cameras_.size()) {
     throw Error(
         ErrorCode::bad_input,

@@ -6,6 +6,7 @@
 
 #include "catch.h"
 #include "psf/psf.h"
+#include "read_text.h"
 #include "temp_folder.h"
 
 namespace {
@@ -162,7 +163,11 @@ TEST_CASE("r0 0 gives the picture without filter, and errors are those of the fo
   CHECK(picture.error(reference, "mse") == Approx(0.25));
   CHECK_THROWS_WITH(picture.error(reference, "nothing"),
                     Catch::Matchers::ContainsSubstring("relMSE"));
-  CHECK(picture.displayed().size() == 3 * kSide * kSide);
+  const TempFolder folder;
+  picture.save(folder / "a.png");
+  const std::vector<unsigned char> png = picture.png();
+  CHECK(std::string(png.begin(), png.end()) == psf::tests::read_text(folder / "a.png"));
+  CHECK(picture.png(1) != png);
 }
 
 TEST_CASE("a sweep measures every set as a filter run of its own does") {

@@ -82,7 +82,7 @@ void refuse_to_overwrite(const std::string& folder) {
   }
 }
 
-void run_dumps(const ConvergeOptions& options, filter::TermSet asked) {
+void run_dumps(const ConvergeOptions& options) {
   std::vector<filter::Parameters> sets = all_sets(options.lists);
   const run::Dump dump(options.inputs.front());
   std::vector<std::string> notes;
@@ -104,7 +104,7 @@ void run_dumps(const ConvergeOptions& options, filter::TermSet asked) {
   report.reference = study::describe_reference(options.study.reference, folder.reference_picture());
   for (const std::string& path : options.inputs) {
     const run::Dump replicate(path);
-    fit_terms(replicate, sets, asked, notes);
+    fit_terms(replicate, sets, filter::asked_terms(options.lists.given), notes);
     report.inputs.push_back(
         study::describe_input(replicate, {0, folder.passes().last}, folder.camera()));
   }
@@ -248,7 +248,7 @@ bool run_analytic(const ConvergeOptions& options, study::AnalyticScene which,
                      [](const study::SlopeCheck& check) { return check.passed; });
 }
 
-void run(const ConvergeOptions& options, filter::TermSet asked) {
+void run(const ConvergeOptions& options) {
   keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
   if (!options.analytic) {
@@ -256,7 +256,7 @@ void run(const ConvergeOptions& options, filter::TermSet asked) {
       throw Error(ErrorCode::usage,
                   "converge: give a dump and --reference, or --analytic; see psf converge --help");
     }
-    return run_dumps(options, asked);
+    return run_dumps(options);
   }
   ParameterLists lists;
   lists.given = {{"r0", "12px"}, {"delta", "0.2,0.333333,0.5"}};
@@ -310,7 +310,7 @@ void add_converge(CLI::App& app) {
   set_example(*command,
               "psf converge a.pvb b.pvb c.pvb --reference reference.exr --r0 8px,16px --delta "
               "0.33,0.5 -o converge");
-  command->callback([options, command] { run(*options, asked_terms(*command)); });
+  command->callback([options] { run(*options); });
 }
 
 }  // namespace psf::tools

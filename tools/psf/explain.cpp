@@ -24,7 +24,7 @@
 namespace psf::tools {
 namespace {
 
-struct ExplainOptions : ParameterOptions {
+struct ExplainOptions : filter::ParameterTexts {
   CommonOptions common;
   std::string input, passes, pixel, camera, ply;
   std::optional<std::uint64_t> path;
@@ -53,7 +53,8 @@ explain::ExplainRequest request_of(const ExplainOptions& options) {
     throw Error(ErrorCode::usage, "say what to explain: --pixel X,Y or --path I");
   }
   explain::ExplainRequest request;
-  request.parameters = parameters_of(options);
+  request.parameters = filter::parameters_of(options);
+  request.parameters.validate();
   request.passes = parse_passes(options.passes);
   request.path = options.path;
   if (options.path) return request;
@@ -70,14 +71,14 @@ explain::ExplainRequest request_of(const ExplainOptions& options) {
   return request;
 }
 
-void run(const ExplainOptions& options, filter::TermSet asked) {
+void run(const ExplainOptions& options) {
   const core::ThreadLimit threads(options.common.threads);
   explain::ExplainRequest request = request_of(options);
   check_files({options.input}, {options.common.json, options.ply});
   const run::Dump dump(options.input);
   request.camera = camera_of(options, dump);
   std::vector<std::string> notes;
-  fit_terms(dump, {&request.parameters, 1}, asked, notes);
+  fit_terms(dump, {&request.parameters, 1}, filter::asked_terms(options.given), notes);
   print_notes(notes, options.common.quiet);
 
   core::Progress bar("explain", options.common.quiet);
@@ -125,7 +126,7 @@ void add_explain(CLI::App& app) {
   add_common(*command, options.common);
   wrap_descriptions(*command);
   set_example(*command, "psf explain scene.pvb --pixel 120,88 --visibility=off --ply pixel.ply");
-  command->callback([shared, command] { run(*shared, asked_terms(*command)); });
+  command->callback([shared] { run(*shared); });
 }
 
 }  // namespace psf::tools

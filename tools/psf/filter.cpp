@@ -163,17 +163,16 @@ void check_layers(const run::Dump& dump, const std::string& text,
   if (layers.normal) need("normal", "normal");
 }
 
-void run(const FilterOptions& options, filter::TermSet asked) {
+void run(const FilterOptions& options) {
   const auto start = Clock::now();
   keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
   run::FilterRequest run;
   FilterOptions chosen = options;
-  if (!options.tuned.empty()) {
-    read_tuned(options.tuned, chosen);
-    asked = ~filter::TermSet{0};
-  }
-  run.parameters = parameters_of(chosen);
+  if (!options.tuned.empty()) read_tuned(options.tuned, chosen);
+  run.parameters = filter::parameters_of(chosen);
+  run.parameters.count_refusals = options.refusals;
+  run.parameters.validate();
   run.passes = parse_passes(options.passes);
   run.layers = layers_of(options.layers);
   run.max_memory = options.max_memory;
@@ -181,7 +180,7 @@ void run(const FilterOptions& options, filter::TermSet asked) {
   if (options.follow) wait_for_first_pass(options.input);
   run::Dump dump(options.input);
   std::vector<std::string> notes;
-  fit_terms(dump, {&run.parameters, 1}, asked, notes);
+  fit_terms(dump, {&run.parameters, 1}, filter::asked_terms(chosen.given), notes);
   check_layers(dump, options.layers, run.layers);
   const std::uint64_t last = run.passes.last.value_or(dump.pass_bounds().size() - 1);
   run.snapshots =
@@ -213,7 +212,7 @@ void add_filter(CLI::App& app) {
   CLI::App* command = app.add_subcommand("filter", "filter a dump and write the picture");
   add_filter_options(*command, *options);
   set_example(*command, "psf filter scene.pvb -o filtered.exr -o filtered.png --r0 16px");
-  command->callback([options, command] { run(*options, asked_terms(*command)); });
+  command->callback([options] { run(*options); });
 }
 
 }  // namespace psf::tools

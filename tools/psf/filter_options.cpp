@@ -17,16 +17,6 @@
 
 namespace psf::tools {
 
-filter::TermSet asked_terms(const CLI::App& command) {
-  filter::TermSet asked = 0;
-  for (const filter::Parameter& parameter : filter::parameter_table()) {
-    if (parameter.term && command.get_option(std::string("--") + parameter.name)->count() > 0) {
-      asked |= filter::bit(*parameter.term);
-    }
-  }
-  return asked;
-}
-
 void fit_terms(const run::Dump& dump, std::span<filter::Parameters> sets, filter::TermSet asked,
                std::vector<std::string>& notes) {
   const std::string note = run::switch_off_missing(dump, sets, asked);
@@ -34,23 +24,6 @@ void fit_terms(const run::Dump& dump, std::span<filter::Parameters> sets, filter
     static_cast<void>(dump.select(set, false));  // throws where what was asked for is missing
   }
   if (!note.empty()) notes.push_back(note);
-}
-
-filter::Parameters parameters_of(const ParameterOptions& options) {
-  filter::Parameters parameters;
-  if (options.no_weights) parameters.weights = filter::WeightTerms::none();
-  for (const filter::Parameter& parameter : filter::parameter_table()) {
-    const auto text = options.given.find(parameter.name);
-    if (text != options.given.end()) parameter.set(parameters, text->second);
-  }
-  parameters.validate();
-  return parameters;
-}
-
-filter::Parameters parameters_of(const FilterOptions& options) {
-  filter::Parameters parameters = parameters_of(static_cast<const ParameterOptions&>(options));
-  parameters.count_refusals = options.refusals;
-  return parameters;
 }
 
 std::vector<std::uint64_t> snapshots_of(const std::string& text, std::uint64_t passes) {
@@ -96,7 +69,7 @@ run::PictureLayers layers_of(const std::string& text) {
   return layers;
 }
 
-void add_parameter_options(CLI::App& command, ParameterOptions& options) {
+void add_parameter_options(CLI::App& command, filter::ParameterTexts& options) {
   for (const filter::Parameter& parameter : filter::parameter_table()) {
     const std::string name = parameter.name, option = "--" + name;
     const std::string help =

@@ -3,29 +3,19 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "cli.h"
-#include "filter/parameters/parameters.h"
-#include "filter/radius.h"
-#include "filter/weights.h"
+#include "filter/parameters/text.h"
 #include "run/dump.h"
 #include "run/pictures.h"
 
 namespace psf::tools {
 
-// The parameters of the filter as written on the command line, by name, without those that are not
-// given.
-struct ParameterOptions {
-  std::map<std::string, std::string> given;
-  bool no_weights = false;  // switch off the terms that are not given
-};
-
-struct FilterOptions : ParameterOptions {
+struct FilterOptions : filter::ParameterTexts {
   CommonOptions common;
   std::string input;
   std::vector<std::string> outputs;
@@ -36,8 +26,6 @@ struct FilterOptions : ParameterOptions {
   std::optional<std::uint64_t> max_memory;  // bytes
 };
 
-// The terms that are given on the command line, without those left at their default.
-[[nodiscard]] filter::TermSet asked_terms(const CLI::App& command);
 // Switches off, in all sets, the terms that are not `asked` for and whose channel the dump lacks.
 // Adds a remark about them to `notes`, to be printed when everything is checked, since an error
 // must be the only line.
@@ -47,12 +35,9 @@ void fit_terms(const run::Dump& dump, std::span<filter::Parameters> sets, filter
 [[nodiscard]] run::PictureLayers layers_of(const std::string& text);
 
 // Each of these declares options, which write into `options`.
-void add_parameter_options(CLI::App& command, ParameterOptions& options);
+void add_parameter_options(CLI::App& command, filter::ParameterTexts& options);
 void add_filter_options(CLI::App& command, FilterOptions& options);
 
-// Each of these throws Error{usage} that names an option whose text is not a valid value.
-[[nodiscard]] filter::Parameters parameters_of(const ParameterOptions& options);
-[[nodiscard]] filter::Parameters parameters_of(const FilterOptions& options);
 // The snapshots of a run over `passes` passes, ascending.
 [[nodiscard]] std::vector<std::uint64_t> snapshots_of(const std::string& text,
                                                       std::uint64_t passes);

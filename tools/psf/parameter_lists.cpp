@@ -110,7 +110,7 @@ void add_parameter_lists(CLI::App& command, ParameterLists& lists) {
 }
 
 std::vector<filter::Parameters> all_sets(const ParameterLists& lists) {
-  std::vector<ParameterOptions> sets(1);
+  std::vector<filter::ParameterTexts> sets(1);
   sets[0].no_weights = lists.no_weights;
   // Every set with every value of the parameter's list.
   const auto multiply = [&](const std::string& name) {
@@ -122,8 +122,8 @@ std::vector<filter::Parameters> all_sets(const ParameterLists& lists) {
           ErrorCode::usage,
           fmt::format("--{}: more than {} combinations; shorten the lists", name, kMostSets));
     }
-    std::vector<ParameterOptions> product;
-    for (const ParameterOptions& set : sets) {
+    std::vector<filter::ParameterTexts> product;
+    for (const filter::ParameterTexts& set : sets) {
       for (const std::string& value : values) {
         product.push_back(set);
         product.back().given[name] = value;
@@ -139,7 +139,10 @@ std::vector<filter::Parameters> all_sets(const ParameterLists& lists) {
   multiply("delta");
   std::vector<filter::Parameters> parameters;
   parameters.reserve(sets.size());
-  for (const ParameterOptions& set : sets) parameters.push_back(parameters_of(set));
+  for (const filter::ParameterTexts& set : sets) {
+    parameters.push_back(filter::parameters_of(set));
+    parameters.back().validate();
+  }
   return parameters;
 }
 

@@ -82,13 +82,13 @@ void print_best(const study::Json& json, metrics::Metric metric) {
   fmt::print("{:>4}  {:>10.4g}  unfiltered\n", "", value_of(json["unfiltered"]));
 }
 
-void run(const SweepOptions& options, filter::TermSet terms) {
+void run(const SweepOptions& options) {
   keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
   std::vector<filter::Parameters> asked = all_sets(options.lists);
   const run::Dump dump(options.input);
   std::vector<std::string> notes;
-  fit_terms(dump, asked, terms, notes);
+  fit_terms(dump, asked, filter::asked_terms(options.lists.given), notes);
   const StudyFolder folder(options.study, dump, notes);
   study::SweepFile file(
       folder.path(),
@@ -166,7 +166,7 @@ void add_sweep(CLI::App& app) {
   set_example(*command,
               "psf sweep scene.pvb --reference reference.exr --r0 2px:32px:x2 --delta 0.2,0.33,0.5 "
               "-o sweep");
-  command->callback([options, command] { run(*options, asked_terms(*command)); });
+  command->callback([options] { run(*options); });
 }
 
 }  // namespace psf::tools

@@ -122,7 +122,7 @@ study::Json to_json(const study::TuneRow& row) {
           {"may_be_better", row.may_be_better}};
 }
 
-void run(const TuneOptions& options, filter::TermSet asked) {
+void run(const TuneOptions& options) {
   keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
   ParameterLists lists = options.lists;
@@ -130,7 +130,7 @@ void run(const TuneOptions& options, filter::TermSet asked) {
   std::vector<filter::Parameters> sets = all_sets(lists);
   const run::Dump dump(options.input);
   std::vector<std::string> notes;
-  fit_terms(dump, sets, asked, notes);
+  fit_terms(dump, sets, filter::asked_terms(options.lists.given), notes);
   study::TuneRequest tune;
   tune.sets = sets;
   tune.passes = parse_passes(options.passes);
@@ -194,7 +194,7 @@ void add_tune(CLI::App& app) {
   command->get_option("--r0")->description("radii (default nine from 2px to 32px)");
   add_common(*command, options->common);
   set_example(*command, "psf tune scene.pvb --delta 0.2,0.33,0.5 --json tuned.json");
-  command->callback([options, command] { run(*options, asked_terms(*command)); });
+  command->callback([options] { run(*options); });
 }
 
 }  // namespace psf::tools

@@ -8,7 +8,7 @@
 
 namespace psf::tools {
 
-void read_tuned(const std::string& path, ParameterOptions& options) {
+void read_tuned(const std::string& path, filter::ParameterTexts& options) {
   const std::string remedy = "give what psf tune --json wrote";
   const study::Json json = study::read_study_file(path, "tune", remedy);
   for (const filter::Parameter& parameter : filter::parameter_table()) {

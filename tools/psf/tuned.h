@@ -8,6 +8,6 @@
 namespace psf::tools {
 
 // Throws Error{io} where the file cannot be read, Error{bad_input} where psf tune did not write it.
-void read_tuned(const std::string& path, ParameterOptions& options);
+void read_tuned(const std::string& path, filter::ParameterTexts& options);
 
 }  // namespace psf::tools

@@ -17,7 +17,6 @@ namespace {
 template <typename T>
 std::optional<T> number(std::string_view text) {
   T value{};
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || text.empty()) return std::nullopt;
   return value;
@@ -53,7 +52,8 @@ Enum parse_name(const char* name, const std::string& text,
 
 template <class T>
 T parse_number(const char* name, const std::string& text) {
-  const std::optional<T> value = number<T>(text);
+  const bool has_plus = text.starts_with('+') && !text.starts_with("+-");
+  const std::optional<T> value = number<T>(std::string_view(text).substr(has_plus ? 1 : 0));
   if (!value || !(*value == *value)) refuse(name, text, "is no number");
   return *value;
 }
@@ -292,6 +292,22 @@ const Parameter& find_parameter(std::string_view name) {
 
 void set_parameter(Parameters& parameters, std::string_view name, const std::string& text) {
   find_parameter(name).set(parameters, text);
+}
+
+Parameters parameters_of(const ParameterTexts& texts) {
+  Parameters parameters;
+  if (texts.no_weights) parameters.weights = WeightTerms::none();
+  for (const auto& [name, text] : texts.given) set_parameter(parameters, name, text);
+  return parameters;
+}
+
+TermSet asked_terms(const std::map<std::string, std::string>& given) {
+  TermSet asked = 0;
+  for (const auto& [name, text] : given) {
+    const std::optional<Term> term = find_parameter(name).term;
+    if (term) asked |= bit(*term);
+  }
+  return asked;
 }
 
 std::vector<std::pair<std::string, std::string>> describe(const Parameters& parameters) {

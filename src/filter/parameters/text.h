@@ -2,6 +2,7 @@
 // reports and other languages are loops over it.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -39,6 +40,17 @@ void set_parameter(Parameters& parameters, std::string_view name, const std::str
 // The name and the text of every parameter.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> describe(
     const Parameters& parameters);
+
+// Parameters that were given as text; what is not given is the default.
+struct ParameterTexts {
+  std::map<std::string, std::string> given;  // by name
+  bool no_weights = false;                   // switch off the terms that are not given
+};
+// Throws Error{usage} for names and texts as find_parameter() and `set`; the values may not go
+// together, which Parameters::validate() says.
+[[nodiscard]] Parameters parameters_of(const ParameterTexts& texts);
+// The terms that are among the names.
+[[nodiscard]] TermSet asked_terms(const std::map<std::string, std::string>& given);
 
 // Text as of the parameters `r0` and `block`: 8px, 0.02, 0.5wu; 2^16, 16passes, 1pass, all.
 [[nodiscard]] std::string to_text(const Radius& radius);

@@ -1,0 +1,88 @@
+"""Pictures."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from psf import _psf
+
+
+class Picture:
+    """A picture of one camera with its layers."""
+
+    def __init__(self, picture: _psf.Picture) -> None:
+        self._picture = picture
+
+    @property
+    def width(self) -> int:
+        return self._picture.width
+
+    @property
+    def height(self) -> int:
+        return self._picture.height
+
+    @property
+    def camera(self) -> str:
+        """The name of the camera."""
+        return self._picture.camera
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """What its EXR says of it: the dump, and every parameter."""
+        return self._picture.attributes
+
+    @property
+    def layers(self) -> list[str]:
+        """The names of its layers, for ``picture[name]``."""
+        return self._picture.layer_names
+
+    def __getitem__(self, layer: str) -> npt.NDArray[np.float32]:
+        """A layer, (height, width); a view, which is not copied."""
+        return self._picture.layer(layer)
+
+    @property
+    def rgb(self) -> npt.NDArray[np.float32]:
+        """The colours, (height, width, 3), linear."""
+        return self._picture.rgb()
+
+    @property
+    def unfiltered(self) -> npt.NDArray[np.float32]:
+        """The colours of the same paths without filter, (height, width, 3)."""
+        return self._picture.rgb("unfiltered-input.")
+
+    @property
+    def neighbors(self) -> npt.NDArray[np.float32]:
+        """The mean number of records averaged, (height, width)."""
+        return self["neighbors.Y"]
+
+    @property
+    def radius(self) -> npt.NDArray[np.float32]:
+        """The mean radius in world units, (height, width)."""
+        return self["radius.Y"]
+
+    def error(self, reference: Picture | str, metric: str = "relMSE") -> float:
+        """The error against a reference, a picture or an EXR file, by a metric of ``metrics()``."""
+        if isinstance(reference, str):
+            reference = read_picture(reference)
+        return self._picture.error(reference._picture, metric)
+
+    def save(self, path: str) -> None:
+        """Writes an EXR with all layers, or a PNG to look at: the bytes of ``psf filter -o``."""
+        self._picture.save(path)
+
+    def png(self, exposure: float = 0) -> bytes:
+        """The bytes of a PNG to look at: times 2^exposure, tone-mapped; those of save() at 0."""
+        return self._picture.png(exposure)
+
+    def _repr_png_(self) -> bytes:
+        return self.png()
+
+    def __repr__(self) -> str:
+        name = f" of {self.camera}" if self.camera else ""
+        return f"<psf.Picture{name}, {self.width} x {self.height}: {', '.join(self.layers)}>"
+
+
+def read_picture(path: str, layer: str = "") -> Picture:
+    """Reads the colours of an EXR: its root or the layer of this name."""
+    return Picture(_psf.Picture.read(path, layer))
