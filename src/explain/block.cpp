@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "filter/estimators/disk.h"
 #include "filter/inputs.h"
 #include "filter/radius.h"
 #include "search/ball.h"
@@ -16,11 +17,11 @@ BlockExplainer::BlockExplainer(const filter::Records& records, const filter::Blo
     : parameters_(parameters) {
   std::vector<float> given;
   filter::radii(parameters.radius, records, block, given);
-  average_ = filter::average(records, given, block, parameters);
+  average_ = filter::estimate(records, given, block, parameters);
   if (parameters.iterations > 1) {
     filter::Parameters fewer = parameters;
     --fewer.iterations;
-    before_ = filter::average(records, given, block, fewer).c_bar;
+    before_ = filter::estimate(records, given, block, fewer).c_bar;
   }
   radius_in_world_ = average_.radius.empty() ? given : average_.radius;
   scaled_.emplace(records, radius_in_world_);
@@ -35,7 +36,7 @@ BlockExplainer::BlockExplainer(const filter::Records& records, const filter::Blo
     positions.push_back(records_.position[j]);
   }
   search_ = search::make_search(search::Kind::brute, positions);
-  if (parameters.estimator == filter::Estimator::disk) {
+  if (filter::info(parameters.estimator).is_over_area) {
     area_ = filter::areas(records_, roles_, block);
   }
 }
@@ -67,7 +68,7 @@ Rgb BlockExplainer::value(std::uint32_t j) const {
 
 // Without area a ball holds its own value.
 bool BlockExplainer::is_disk(std::uint32_t i) const {
-  return parameters_.estimator == filter::Estimator::disk && radius_[i] * radius_[i] > 0;
+  return filter::info(parameters_.estimator).is_over_area && radius_[i] * radius_[i] > 0;
 }
 
 PathFate BlockExplainer::fate_of(std::uint32_t i) const {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "explain/explain.h"
-#include "filter/average.h"
+#include "filter/estimate.h"
 #include "filter/orphans.h"
 #include "filter/roles.h"
 #include "filter/scaled.h"
@@ -47,7 +47,7 @@ class BlockExplainer {
   void adopt(std::uint32_t i, std::vector<ExplainedPair>& pairs) const;
 
   const filter::Parameters& parameters_;
-  filter::Average average_;
+  filter::Estimates average_;
   std::vector<Rgb> before_;             // c_bar of the iteration before the last
   std::vector<float> radius_in_world_;  // r_i, as chosen, world units
   std::optional<filter::Scaled> scaled_;

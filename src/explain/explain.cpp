@@ -1,6 +1,7 @@
 #include "explain/explain.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -191,13 +192,13 @@ class Explainer {
 
 ExplainResult explain(const run::Dump& dump, const ExplainRequest& request) {
   request.parameters.validate();
-  using filter::Estimator;
-  const Estimator estimator = request.parameters.estimator;
-  if (estimator != Estimator::average && estimator != Estimator::disk &&
-      estimator != Estimator::adaptive) {
-    refuse(
-        "`estimator`: only those that average over a ball can be explained: average, adaptive, "
-        "disk");
+  if (!filter::info(request.parameters.estimator).is_of_ball) {
+    std::vector<std::string_view> names;
+    for (const filter::EstimatorInfo& estimator : filter::estimators()) {
+      if (estimator.is_of_ball) names.push_back(estimator.name);
+    }
+    refuse(fmt::format("`estimator`: only those that average over a ball can be explained: {}",
+                       fmt::join(names, ", ")));
   }
   return Explainer(dump, request).run();
 }

@@ -68,7 +68,7 @@ Colour PixelIf::reflected(const ExplainedPath& path, const Averaged& averaged) c
   const double r = double{path.radius};
   const filter::Parameters& parameters = e_.request.parameters;
   const bool disk =
-      parameters.estimator == filter::Estimator::disk && path.radius * path.radius > 0;
+      filter::info(parameters.estimator).is_over_area && path.radius * path.radius > 0;
   Colour mean =
       averaged.sum / (disk ? std::numbers::pi * r * r : static_cast<double>(averaged.count));
   if (!parameters.demodulate) return alpha * mean;

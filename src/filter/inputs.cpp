@@ -30,21 +30,6 @@ WeightTerms terms_in_use(const Records& records, const WeightTerms& terms) {
   return in_use;
 }
 
-std::vector<float> areas(const Records& records, const Roles& roles, const Block& block) {
-  if (block.cameras.size() > 1) {
-    throw Error(ErrorCode::usage,
-                "`estimator disk` counts a surface once for every camera that sees it: "
-                "it needs a dump of one camera");
-  }
-  std::vector<float> area(records.size());
-  for (const std::uint32_t j : roles.sources) {
-    area[j] = static_cast<float>(surface_area(block.cameras[0].angle_per_pixel,
-                                              double{records.distance[j]}, records.normal[j],
-                                              records.direction[j], block.samples_per_pixel));
-  }
-  return area;
-}
-
 // c / rho of the sources.
 std::vector<Rgb> demodulated(const Records& records, const Roles& roles) {
   std::vector<Rgb> values(records.size(), Rgb(0, 0, 0));

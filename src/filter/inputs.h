@@ -1,4 +1,4 @@
-// The inputs of an estimator: required channels, values to average, areas.
+// The inputs of an estimator: required channels, terms, values to average.
 #pragma once
 
 #include <cstdint>
@@ -21,17 +21,13 @@ void require_channels(const Records& records, const Parameters& parameters);
 // By record number: c / rho of the sources, 0 for other records.
 [[nodiscard]] std::vector<Rgb> demodulated(const Records& records, const Roles& roles);
 
-// By record number: A_j of [disk] of the sources, 0 for other records. Throws Error{usage} where
-// the block has several cameras.
-[[nodiscard]] std::vector<float> areas(const Records& records, const Roles& roles,
-                                       const Block& block);
-
 // c_bar_i from the average over `neighbors` sources: multiplied by rho_i under demodulation. A
 // source that was averaged over itself alone keeps c_i, which dividing and multiplying would round.
 [[nodiscard]] inline Rgb finished(const Rgb& averaged, std::uint32_t neighbors, bool is_source,
                                   float r_i, const Records& records, std::uint32_t i,
                                   const Parameters& parameters) {
-  if (neighbors == 1 && is_source && (parameters.estimator != Estimator::disk || r_i * r_i == 0)) {
+  const bool is_mean = !info(parameters.estimator).is_over_area || r_i * r_i == 0;
+  if (neighbors == 1 && is_source && is_mean) {
     return records.contribution[i];
   }
   return parameters.demodulate ? remodulate(averaged, records.reflectance[i]) : averaged;

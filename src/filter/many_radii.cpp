@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "core/seconds.h"
 #include "filter/engine/ring_engine.h"
+#include "filter/estimators/disk.h"
 #include "filter/inputs.h"
 #include "filter/radius.h"
 #include "filter/scaled.h"
@@ -46,8 +47,7 @@ struct Scales {
 
 bool can_share(const Parameters& parameters) {
   return parameters.iterations == 1 && parameters.engine == EngineKind::flann &&
-         !parameters.count_refusals &&
-         (parameters.estimator == Estimator::average || parameters.estimator == Estimator::disk);
+         !parameters.count_refusals && info(parameters.estimator).shares_traversal;
 }
 
 class Many {
@@ -84,7 +84,7 @@ class Many {
     Roles roles = find_roles(records, block_, parameters_, counts);
     if (roles.sources.empty()) return false;
     std::vector<float> area;
-    if (parameters_.estimator == Estimator::disk) area = areas(records, roles, block_);
+    if (info(parameters_.estimator).is_over_area) area = areas(records, roles, block_);
     const Weights weights(records, terms_in_use(records, parameters_.weights));
     const Problem problem{records, roles, scaled.radius(), weights, area};
     engine::RingEngine engine(problem, scales.values, basis);
@@ -134,7 +134,7 @@ class Many {
 
   void finish(const engine::RingEngine& engine, const Roles& roles, const Scales& scales,
               const engine::RingEngine::Results& results, std::span<Rgb> c_bar) const {
-    if (!parameters_.demodulate && parameters_.estimator == Estimator::average) {
+    if (!parameters_.demodulate && !info(parameters_.estimator).is_over_area) {
       for (std::size_t k = 0; k < c_bar.size(); ++k) c_bar[k] = results.average[scales.of[k]];
       return;
     }
@@ -167,7 +167,7 @@ class Many {
       Parameters parameters = parameters_;
       parameters.radius = radii_[k];
       radii(parameters.radius, r_, block_, radius);
-      const Average average = filter::average(r_, radius, block_, parameters);
+      const Estimates average = filter::estimate(r_, radius, block_, parameters);
       queries.clear();
       c_bar.clear();
       for (std::size_t i = 0; i < r_.size(); ++i) {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "filter/average.h"
+#include "filter/estimate.h"
 
 namespace psf::filter {
 
@@ -33,14 +33,14 @@ class Receiver {
 };
 
 struct ManyAverages {
-  std::vector<Role> roles;             // role of each record, as in Average
+  std::vector<Role> roles;             // role of each record, as in Estimates
   std::vector<Statistics> statistics;  // one per radius; the seconds are for all radii together
 };
 
-// Averages like average() for each of `radii`, which replace parameters.radius and have its basis
+// Estimates like estimate() for each of `radii`, which replace parameters.radius and have its basis
 // and count; only the order of sums differs. Every query of the block is given to `receiver` for
-// every radius. [average] and [disk] take one traversal; iterations and the other estimators take
-// one per radius. Throws what average() and the receiver throw.
+// every radius. Where the estimator shares a traversal there is one for all, but iterations take
+// one per radius. Throws what estimate() and the receiver throw.
 [[nodiscard]] ManyAverages average_many(const Records& records, const Block& block,
                                         const Parameters& parameters, std::span<const Radius> radii,
                                         Receiver& receiver);

@@ -42,7 +42,7 @@ class Worker {
     }
     if (count_refusals_ && own) ++counts.candidates;
     counts.add_query(count);
-    out = count > 0 ? estimate(sum, count, disk, r_i, values_[i])
+    out = count > 0 ? quotient(sum, count, disk, r_i, values_[i])
                     : average_of(adopt(search_, p_, i), values_, counts);
     return count;
   }
@@ -76,8 +76,8 @@ class PlainEngine final : public Engine {
     search_ = search::make_search(search_of(kind), positions);
   }
 
-  void average(std::span<const Rgb> values, bool count_refusals, std::span<Rgb> out,
-               std::span<std::uint32_t> neighbors, Statistics& statistics) override {
+  void apply(std::span<const Rgb> values, bool count_refusals, std::span<Rgb> out,
+             std::span<std::uint32_t> neighbors, Statistics& statistics) override {
     std::vector<Statistics> parts(core::range_count(order_.size(), kPlainGrain));
     core::parallel_for(order_.size(), kPlainGrain, [&](std::size_t begin, std::size_t end) {
       core::throw_if_interrupted("no picture was written");

@@ -33,8 +33,8 @@ class Engine {
   // the sources to out[i], and the number of sources to neighbors[i], 0 for an orphan. Adds its
   // counts to `statistics`. The result is the same for any number of threads. Throws
   // Error{interrupted} on ^C.
-  virtual void average(std::span<const Rgb> values, bool count_refusals, std::span<Rgb> out,
-                       std::span<std::uint32_t> neighbors, Statistics& statistics) = 0;
+  virtual void apply(std::span<const Rgb> values, bool count_refusals, std::span<Rgb> out,
+                     std::span<std::uint32_t> neighbors, Statistics& statistics) = 0;
 };
 
 // The search of the engines that search for each record.

@@ -74,15 +74,15 @@ class Classifier {
         k_(parameters.sources),
         shaded_share_(block.shade_rate > 1 ? 1 : shaded_share(records)),
         demodulate_(parameters.demodulate) {
-    const WeightTerms& weights = parameters.weights;
-    const bool disk = parameters.estimator == Estimator::disk;
-    distance_ = disk || parameters.radius.basis != RadiusBasis::world;
-    normal_ = disk || weights.normal || weights.plane || weights.gloss;
-    reflectance_ = demodulate_ || weights.reflectance;
-    hit_distance_ = weights.hit_distance.has_value();
+    distance_ = needs_distance(parameters);
+    for (const ChannelNeed& need : optional_channels(parameters)) {
+      normal_ |= need.channel == kCheckedNames[kNormal];
+      reflectance_ |= need.channel == kCheckedNames[kReflectance];
+      hit_distance_ |= need.channel == kCheckedNames[kHitDistance];
+      direction_ |= need.channel == kCheckedNames[kDirection];
+      roughness_ |= need.channel == kCheckedNames[kRoughness];
+    }
     shaded_alone_ = hit_distance_ && lacks_hits(records);
-    direction_ = disk || weights.direction || weights.gloss;
-    roughness_ = weights.gloss.has_value();
     for (const CameraView& camera : block.cameras) {
       pixels_ += std::uint64_t{camera.width} * camera.height;
     }
@@ -172,8 +172,9 @@ class Classifier {
   std::uint32_t k_;
   double shaded_share_;  // share of shaded paths, estimated from the records with a vertex
   bool demodulate_;
-  bool distance_, normal_, reflectance_, hit_distance_, direction_, roughness_;
-  bool shaded_alone_;  // unshaded records are left out, with a vertex or without
+  bool distance_ = false, normal_ = false, reflectance_ = false, hit_distance_ = false,
+       direction_ = false, roughness_ = false;
+  bool shaded_alone_ = false;  // unshaded records are left out, with a vertex or without
   std::uint64_t pixels_ = 0;
 };
 

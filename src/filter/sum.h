@@ -23,7 +23,7 @@ struct Sum {
 
 // [average], or [disk] where `disk` is set, from the `sum` of `count` > 0 values, which are
 // multiplied by their areas for [disk]. Where the disk has no area it is the record's `own` value.
-[[nodiscard]] inline Rgb estimate(const Sum& sum, std::uint32_t count, bool disk, float r_i,
+[[nodiscard]] inline Rgb quotient(const Sum& sum, std::uint32_t count, bool disk, float r_i,
                                   const Rgb& own) {
   if (!disk) return sum.over(count);
   if (!(r_i * r_i > 0)) return own;

@@ -7,9 +7,9 @@
 #include <cstring>
 
 #include "core/error.h"
-#include "filter/average.h"
 #include "filter/blocks.h"
 #include "filter/channels.h"
+#include "filter/estimate.h"
 #include "filter/places.h"
 #include "filter/radius.h"
 #include "psf/library.h"
@@ -106,17 +106,12 @@ void check_places(const filter::Records& records, std::span<const filter::Camera
 // What radii need beside the channels of the weights.
 void check_radius(const filter::Parameters& parameters, const filter::Records& records,
                   std::span<const Camera> cameras) {
-  const bool in_world = parameters.radius.basis == filter::RadiusBasis::world;
-  if ((!in_world || parameters.estimator == filter::Estimator::disk) && records.distance.empty() &&
-      records.size() > 0) {
+  if (filter::needs_distance(parameters) && records.distance.empty() && records.size() > 0) {
     throw Error(ErrorCode::bad_input,
                 "the records have no channel distance, which a radius that depends on the distance "
                 "needs; give it, or `r0` in world units, such as `r0 0.5wu`");
   }
-  if (parameters.radius.basis != filter::RadiusBasis::footprint &&
-      parameters.estimator != filter::Estimator::disk) {
-    return;
-  }
+  if (!filter::needs_angle(parameters)) return;
   for (const Camera& camera : cameras) {
     if (std::isfinite(camera.angle_per_pixel) && camera.angle_per_pixel > 0) continue;
     throw Error(
@@ -160,7 +155,7 @@ FilteredRecords filter_records(const Records& records, std::span<const Camera> c
 
   FilteredRecords result;
   filter::radii(chosen.radius, view, block, result.radius);
-  filter::Average average = filter::average(view, result.radius, block, chosen);
+  filter::Estimates average = filter::estimate(view, result.radius, block, chosen);
   std::vector<run::CameraPictures> pictures;
   for (const filter::CameraView& camera : views) {
     run::PictureLayers layers;

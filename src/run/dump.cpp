@@ -127,14 +127,10 @@ ChannelSet Dump::select(const filter::Parameters& parameters, bool guides) const
   set.throughput = require("throughput", filter);
   set.contribution = require("contribution", filter);
   set.pixel = require("pixel", filter);
-  if (parameters.radius.basis != filter::RadiusBasis::world ||
-      parameters.estimator == filter::Estimator::disk) {
+  if (filter::needs_distance(parameters)) {
     set.distance = require("distance", "a radius that depends on the distance");
   }
-  if (parameters.radius.basis == filter::RadiusBasis::footprint ||
-      parameters.estimator == filter::Estimator::disk) {
-    require_angles();
-  }
+  if (filter::needs_angle(parameters)) require_angles();
   set.flags = find("flags");
   set.unfiltered = find("unfiltered");
   set.camera = cameras_.size() > 1 ? std::optional(require("camera", "a dump of several cameras"))

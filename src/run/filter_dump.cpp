@@ -9,9 +9,9 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/seconds.h"
-#include "filter/average.h"
+#include "filter/estimate.h"
 #include "filter/radius.h"
-#include "run/block_reader.h"
+#include "run/block_loop.h"
 
 namespace psf::run {
 namespace {
@@ -31,42 +31,39 @@ void check_snapshots(const Dump& dump, const std::vector<std::uint64_t>& snapsho
   }
 }
 
-class Runner {
+class DumpFilter {
  public:
   // `copies`: of the pictures that are kept at once.
-  Runner(const Dump& dump, const FilterRequest& run, std::uint64_t copies)
+  DumpFilter(const Dump& dump, const FilterRequest& run, std::uint64_t copies)
       : dump_(dump),
         run_(run),
         copies_(copies),
         first_(run.passes.first),
-        channels_(dump.select(run.parameters, run.layers.albedo || run.layers.normal)),
-        reader_(dump, channels_) {}
+        blocks_(dump, dump.select(run.parameters, run.layers.albedo || run.layers.normal),
+                run.parameters.block, run.parameters.radius.count, run.passes.first) {}
 
   // All passes up to `last`, not included.
   FilterResult run(std::size_t last) {
     check_snapshots(dump_, run_.snapshots, last - first_);
     set_last(last);
-    while (next_block_ < blocks_->count()) filter_block(next_block_++);
+    if (blocks_.visit_whole(visitor_)) blocks_.visit_rest(visitor_);
     return std::move(outcome_);
   }
 
   // The same, for a dump that grows: may be called again with more passes.
   FilterResult run_so_far(std::size_t last) {
     set_last(last);
-    while (next_block_ < blocks_->count() && blocks_->is_whole(next_block_)) {
-      filter_block(next_block_++);
-    }
-    if (next_block_ == blocks_->count()) return outcome_;
+    if (!blocks_.visit_whole(visitor_)) return outcome_;
     FilterResult whole = outcome_;
-    filter_block(next_block_);
+    blocks_.visit_rest(visitor_);
     return std::exchange(outcome_, std::move(whole));
   }
 
  private:
   void make_pictures() {
     PictureLayers layers = run_.layers;
-    layers.albedo = layers.albedo && channels_.reflectance.has_value();
-    layers.normal = layers.normal && channels_.normal.has_value();
+    layers.albedo = layers.albedo && blocks_.channels().reflectance.has_value();
+    layers.normal = layers.normal && blocks_.channels().normal.has_value();
     for (const filter::CameraView& camera : dump_.cameras()) {
       outcome_.pictures.emplace_back(camera, layers);
       if (run_.with_noise) outcome_.noise.emplace_back(camera);
@@ -74,47 +71,40 @@ class Runner {
   }
 
   void set_last(std::size_t last) {
-    blocks_.emplace(run_.parameters.block, dump_.pass_bounds(), first_, last);
-    outcome_.passes = last - first_;
-    outcome_.blocks = blocks_->count();
     const std::uint64_t sums =
         CameraPictures::kBytesOfSums + (run_.with_noise ? NoiseMoments::kBytesAPixel : 0);
-    outcome_.memory = plan_memory(dump_, channels_,
+    outcome_.memory = plan_memory(dump_, blocks_.channels(),
                                   {run_.parameters, first_, last, run_.max_memory,
                                    copies_ * sums + CameraPictures::kBytesToWrite});
+    blocks_.set_last(last, outcome_.memory.blocks > 1);
+    outcome_.passes = last - first_;
+    outcome_.blocks = blocks_.count();
     if (outcome_.pictures.empty()) make_pictures();
   }
 
-  void filter_block(std::uint64_t k) {
-    const filter::PathRange range = (*blocks_)[k];
-    const bool ahead = outcome_.memory.blocks > 1 && k + 1 < blocks_->count();
-    const filter::Records records =
-        reader_.read(range, ahead ? std::optional((*blocks_)[k + 1]) : std::nullopt).view();
-    outcome_.seconds_read = reader_.seconds();
-
-    const filter::Block block = describe_block(dump_, *blocks_, k, run_.parameters.radius.count);
-    filter::Average average;
+  void filter(const BlockLoop::Visit& visit) {
+    outcome_.seconds_read = blocks_.seconds_read();
+    filter::Estimates estimates;
     core::undisturbed([&] {
-      filter::radii(run_.parameters.radius, records, block, radius_);
-      average = filter::average(records, radius_, block, run_.parameters);
+      filter::radii(run_.parameters.radius, visit.records, visit.block, radius_);
+      estimates = filter::estimate(visit.records, radius_, visit.block, run_.parameters);
     });
-    outcome_.statistics += average.statistics;
-
-    add_to_pictures(range, records, average);
+    outcome_.statistics += estimates.statistics;
+    add_to_pictures(visit.paths, visit.records, estimates);
     if (run_.on_progress) {
-      run_.on_progress(range.last - blocks_->all().first, blocks_->all().size());
+      run_.on_progress(visit.paths.last - blocks_.all().first, blocks_.all().size());
     }
   }
 
   void add_to_pictures(const filter::PathRange& range, const filter::Records& records,
-                       const filter::Average& average) {
+                       const filter::Estimates& estimates) {
     std::size_t i = 0;
     const auto add_up_to = [&](std::uint64_t path) {
       const auto start = Clock::now();
       const auto end = static_cast<std::size_t>(path - range.first);
       core::undisturbed([&] {
-        outcome_.overflows += add_records(records, average, radius_, i, end, outcome_.pictures);
-        if (run_.with_noise) add_noise(records, average.roles, i, end, outcome_.noise);
+        outcome_.overflows += add_records(records, estimates, radius_, i, end, outcome_.pictures);
+        if (run_.with_noise) add_noise(records, estimates.roles, i, end, outcome_.noise);
       });
       i = end;
       outcome_.seconds_film += seconds_since(start);
@@ -134,10 +124,8 @@ class Runner {
   const FilterRequest& run_;
   std::uint64_t copies_;
   std::size_t first_;  // pass
-  std::optional<filter::Blocks> blocks_;
-  std::uint64_t next_block_ = 0;
-  ChannelSet channels_;
-  BlockReader reader_;
+  BlockLoop blocks_;
+  BlockLoop::Visitor visitor_ = [this](const BlockLoop::Visit& visit) { filter(visit); };
   std::size_t next_snapshot_ = 0;
   std::vector<float> radius_;
   FilterResult outcome_;
@@ -148,14 +136,14 @@ class Runner {
 FilterResult filter_dump(const Dump& dump, const FilterRequest& run) {
   run.parameters.validate();
   const std::size_t last = last_pass(dump, run.passes);
-  return Runner(dump, run, 1).run(last);
+  return DumpFilter(dump, run, 1).run(last);
 }
 
 FilterResult follow_dump(Dump& dump, const FilterRequest& run,
                          const std::function<void(const FilterResult&)>& on_pictures,
                          const std::function<void()>& wait) {
   run.parameters.validate();
-  Runner runner(dump, run, 3);  // 3 sets: whole blocks, with the last block, handed out before
+  DumpFilter runner(dump, run, 3);  // 3 sets: whole blocks, with the last block, handed out before
   FilterResult outcome;
   for (;;) {
     const std::size_t passes = dump.pass_bounds().size() - 1;

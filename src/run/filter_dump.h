@@ -48,7 +48,7 @@ struct FilterResult {
 // Filters a dump. The next block is read while one is filtered. The memory is that of
 // MemoryEstimate, whatever the length of the dump. Throws Error{limit} before any work where
 // `max_memory` cannot be kept, Error{usage} for passes or snapshots that the dump does not have,
-// Error{interrupted}, and what Dump, Blocks and average() throw; the errors of a block come after
+// Error{interrupted}, and what Dump, Blocks and estimate() throw; the errors of a block come after
 // the blocks before it are in the pictures.
 [[nodiscard]] FilterResult filter_dump(const Dump& dump, const FilterRequest& run);
 

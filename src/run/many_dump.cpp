@@ -11,7 +11,7 @@
 #include "filter/blocks.h"
 #include "filter/parameters/text.h"
 #include "filter/radius.h"
-#include "run/block_reader.h"
+#include "run/block_loop.h"
 #include "run/many_adder.h"
 
 namespace psf::run {
@@ -42,17 +42,18 @@ ChannelSet channels_of(const Dump& dump, const ManyRequest& run) {
   return dump.select(parameters, false);
 }
 
-class ManyRunner {
+class ManyFilter {
  public:
-  ManyRunner(const Dump& dump, const ManyRequest& run)
+  ManyFilter(const Dump& dump, const ManyRequest& run)
       : dump_(dump),
         run_(run),
         first_(run.passes.first),
         last_(last_pass(dump, run.passes)),
-        channels_(channels_of(dump, run)),
-        reader_(dump, channels_) {
+        blocks_(dump, channels_of(dump, run), run.parameters.block, run.radii.front().count,
+                run.passes.first) {
     check_parts();
-    outcome_.memory = plan_memory(dump_, channels_, request_of(run_, last_, run_.radii.size()));
+    outcome_.memory =
+        plan_memory(dump_, blocks_.channels(), request_of(run_, last_, run_.radii.size()));
     for (std::size_t part = 0; part < run_.parts; ++part) {
       for (const filter::CameraView& camera : dump_.cameras()) {
         outcome_.pictures.emplace_back(camera, run_.radii.size());
@@ -62,12 +63,9 @@ class ManyRunner {
   }
 
   ManyResult run() {
-    std::vector<std::uint64_t> snapshots = run_.snapshots;
-    if (snapshots.empty()) snapshots.push_back(last_ - first_);
-    for (const std::uint64_t n : snapshots) {
-      const bool final = n == snapshots.back();
-      filter_up_to(n, final);
-    }
+    std::vector<std::uint64_t> n = run_.n;
+    if (n.empty()) n.push_back(last_ - first_);
+    for (const std::uint64_t passes : n) filter_up_to(passes, passes == n.back());
     return std::move(outcome_);
   }
 
@@ -84,40 +82,33 @@ class ManyRunner {
   }
 
   // Whole blocks are kept from one number of passes to the next.
-  void filter_up_to(std::uint64_t n, bool final) {
-    const filter::Blocks blocks(run_.parameters.block, dump_.pass_bounds(), first_, first_ + n);
+  void filter_up_to(std::uint64_t n, bool is_last) {
+    blocks_.set_last(first_ + n, outcome_.memory.blocks > 1);
     outcome_.passes = n;
-    outcome_.blocks = blocks.count();
-    while (next_block_ < blocks.count() && blocks.is_whole(next_block_)) {
-      filter_block(blocks, next_block_++);
-    }
-    if (next_block_ == blocks.count()) {
-      if (run_.on_snapshot) run_.on_snapshot(n, outcome_);
-      return;
-    }
+    outcome_.blocks = blocks_.count();
+    const auto start = Clock::now();
     std::optional<ManyResult> whole;
-    if (!final) whole = outcome_;
-    filter_block(blocks, next_block_);
-    if (run_.on_snapshot) run_.on_snapshot(n, outcome_);
+    if (blocks_.visit_whole(visitor_)) {
+      if (!is_last) whole = outcome_;
+      blocks_.visit_rest(visitor_);
+    }
+    outcome_.seconds += seconds_since(start);
+    if (run_.on_pictures) run_.on_pictures(n, outcome_);
     if (!whole) return;
     whole->seconds = outcome_.seconds;
     outcome_ = std::move(*whole);
   }
 
-  void filter_block(const filter::Blocks& blocks, std::uint64_t k) {
-    const auto start = Clock::now();
-    const filter::PathRange range = blocks[k];
-    const bool ahead = outcome_.memory.blocks > 1 && k + 1 < blocks.count();
-    const filter::Records records =
-        reader_.read(range, ahead ? std::optional(blocks[k + 1]) : std::nullopt).view();
-    const filter::Block block = describe_block(dump_, blocks, k, run_.radii.front().count);
+  void filter(const BlockLoop::Visit& visit) {
+    const auto& [k, paths, records, block] = visit;
     const std::size_t cameras = dump_.cameras().size();
     const std::span<ManyPictures> pictures =
         std::span(outcome_.pictures).subspan(k % run_.parts * cameras, cameras);
     filter::ManyAverages averages;
     adder_.start(records, pictures);
     core::undisturbed([&] {
-      averages = filter::average_many(records, block, run_.parameters, run_.radii, adder_);
+      averages =
+          filter::average_many(visit.records, visit.block, run_.parameters, run_.radii, adder_);
     });
     outcome_.overflows += adder_.overflows();
     for (std::size_t i = 0; i < records.size(); ++i) {
@@ -128,9 +119,8 @@ class ManyRunner {
       outcome_.statistics[r] += averages.statistics[r];
     }
     set_radius(records, block, averages.roles);
-    outcome_.seconds += seconds_since(start);
     if (run_.on_progress) {
-      run_.on_progress(range.last - dump_.pass_bounds()[first_],
+      run_.on_progress(paths.last - dump_.pass_bounds()[first_],
                        dump_.pass_bounds()[last_] - dump_.pass_bounds()[first_]);
     }
   }
@@ -165,10 +155,9 @@ class ManyRunner {
   const Dump& dump_;
   const ManyRequest& run_;
   std::size_t first_, last_;  // passes
-  ChannelSet channels_;
-  BlockReader reader_;
+  BlockLoop blocks_;
+  BlockLoop::Visitor visitor_ = [this](const BlockLoop::Visit& visit) { filter(visit); };
   ManyAdder adder_;
-  std::uint64_t next_block_ = 0;
   ManyResult outcome_;
 };
 
@@ -176,7 +165,7 @@ class ManyRunner {
 
 ManyResult filter_many(const Dump& dump, const ManyRequest& run) {
   run.parameters.validate();
-  return ManyRunner(dump, run).run();
+  return ManyFilter(dump, run).run();
 }
 
 std::size_t radii_at_once(const Dump& dump, const ManyRequest& run) {

@@ -23,7 +23,7 @@ struct ManyResult {
   std::vector<double> last_radius, first_radius;
   std::uint64_t passes = 0, blocks = 0;
   std::uint64_t overflows = 0;  // paths left out of a picture, over all radii
-  double seconds = 0;           // time of the run so far, without on_snapshot
+  double seconds = 0;           // time of the run so far, without on_pictures
   MemoryEstimate memory;
 };
 
@@ -31,11 +31,11 @@ struct ManyRequest {
   filter::Parameters parameters;      // the radius is replaced by each of `radii`
   std::vector<filter::Radius> radii;  // all with the same basis and count
   PassSelection passes;
-  // The numbers of passes after which on_snapshot is called, ascending, each at least 1; the last
-  // is that of all passes. on_snapshot gets what a run over the first n passes alone would give.
+  // The numbers of passes after which on_pictures is called, ascending, each at least 1; the last
+  // is that of all passes. on_pictures gets what a run over the first n passes alone would give.
   // Empty: all passes.
-  std::vector<std::uint64_t> snapshots;
-  std::function<void(std::uint64_t n, const ManyResult&)> on_snapshot;
+  std::vector<std::uint64_t> n;
+  std::function<void(std::uint64_t n, const ManyResult&)> on_pictures;
   std::function<void(std::uint64_t done, std::uint64_t total)> on_progress;  // paths
   std::optional<std::uint64_t> max_memory;                                   // bytes
   // The number of parts with pictures of their own. Blocks go to the parts in turn, so that the

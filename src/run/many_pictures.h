@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "film/film.h"
-#include "filter/average.h"
+#include "filter/estimate.h"
 #include "filter/records.h"
 
 namespace psf::run {

@@ -17,7 +17,7 @@ struct MemoryEstimate {
   std::uint64_t pictures = 0;  // sums of the pictures, and buffers to write them
   std::uint64_t block = 0;     // the records of the longest block, only the channels that are read
   std::uint64_t blocks = 1;    // number of blocks in memory; 2 where the next one is read ahead
-  std::uint64_t filter = 0;    // what average() needs in addition to the blocks
+  std::uint64_t filter = 0;    // what estimate() needs in addition to the blocks
   // The longest block as stored in the file, Head::stride() bytes per record. The target is
   // blocks * block + filter <= 3 * stored.
   std::uint64_t stored = 0;

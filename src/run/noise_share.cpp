@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 #include "filter/blocks.h"
-#include "run/block_reader.h"
+#include "run/block_loop.h"
 #include "run/median_around.h"
 #include "run/pixel_bands.h"
 
@@ -97,21 +97,16 @@ std::vector<NoiseShare> noise_shares(const Dump& dump, const PassSelection& pass
   parameters.block.passes = 1;
   parameters.weights = filter::WeightTerms::none();
   parameters.sources = sources;
-  const ChannelSet channels = dump.select(parameters, false);
-  const filter::Blocks blocks(parameters.block, dump.pass_bounds(), passes.first,
-                              last_pass(dump, passes));
-  BlockReader reader(dump, channels);
+  BlockLoop blocks(dump, dump.select(parameters, false), parameters.block, parameters.radius.count,
+                   passes.first);
+  blocks.set_last(last_pass(dump, passes), true);
   std::vector<NoiseMoments> moments;
   for (const filter::CameraView& camera : dump.cameras()) moments.emplace_back(camera);
-  for (std::uint64_t k = 0; k < blocks.count(); ++k) {
-    const bool more = k + 1 < blocks.count();
-    const filter::Records records =
-        reader.read(blocks[k], more ? std::optional(blocks[k + 1]) : std::nullopt).view();
-    const filter::Block block = describe_block(dump, blocks, k, filter::RadiusCount::samples);
+  blocks.visit_whole([&](const BlockLoop::Visit& visit) {
     filter::Statistics unused;
-    const filter::Roles roles = filter::find_roles(records, block, parameters, unused);
-    add_noise(records, roles.of, 0, records.size(), moments);
-  }
+    const filter::Roles roles = filter::find_roles(visit.records, visit.block, parameters, unused);
+    add_noise(visit.records, roles.of, 0, visit.records.size(), moments);
+  });
   std::vector<NoiseShare> shares;
   for (const NoiseMoments& one : moments) shares.push_back(one.share(epsilon));
   return shares;

@@ -16,7 +16,7 @@ CameraPictures::CameraPictures(const filter::CameraView& camera, const PictureLa
       albedo_(layers.albedo ? camera.width : 0, layers.albedo ? camera.height : 0),
       normal_(layers.normal ? camera.width : 0, layers.normal ? camera.height : 0) {}
 
-bool CameraPictures::add(const filter::Records& records, const filter::Average& average,
+bool CameraPictures::add(const filter::Records& records, const filter::Estimates& average,
                          std::span<const float> radius, std::size_t i) {
   const filter::Role role = average.roles[i];
   if (role == filter::Role::left_out) return true;
@@ -92,7 +92,7 @@ film::Image CameraPictures::image() const {
   return image;
 }
 
-std::uint64_t add_records(const filter::Records& records, const filter::Average& average,
+std::uint64_t add_records(const filter::Records& records, const filter::Estimates& average,
                           std::span<const float> radius, std::size_t first, std::size_t last,
                           std::span<CameraPictures> pictures) {
   std::vector<std::uint64_t> overflows(pixel_bands(), 0);

@@ -92,7 +92,7 @@ class Study {
   [[nodiscard]] run::ManyRequest run_of(const Traversal& traversal) const {
     run::ManyRequest run = study::run_of(traversal);
     run.passes.last = static_cast<std::size_t>(c_.n.back());
-    run.snapshots = c_.n;
+    run.n = c_.n;
     run.max_memory = c_.max_memory;
     return run;
   }
@@ -114,7 +114,7 @@ class Study {
     for (std::size_t r = 0; r < dumps_.size(); ++r) {
       run::ManyRequest run = run_of(traversal);
       std::size_t place = 0;
-      run.on_snapshot = [&](std::uint64_t n, const run::ManyResult& outcome) {
+      run.on_pictures = [&](std::uint64_t n, const run::ManyResult& outcome) {
         const run::ManyPictures& pictures = outcome.pictures[c_.camera];
         for (std::size_t k = 0; k < rows; ++k) {
           Cell& cell = cells[k][place];

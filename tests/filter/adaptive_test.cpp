@@ -149,8 +149,8 @@ TEST_CASE("A ball keeps away from a step and is whole elsewhere") {
   const RecordSet set = step_of_noise(60000, 4);
   EstimatorRun run(Estimator::adaptive, 0.2);
   run.parameters.agree = 3;
-  const filter::Average adaptive = run(set);
-  const filter::Average average = EstimatorRun(Estimator::average, 0.2)(set);
+  const filter::Estimates adaptive = run(set);
+  const filter::Estimates average = EstimatorRun(Estimator::average, 0.2)(set);
   double error = 0, error_of_average = 0;
   std::size_t whole = 0, far = 0, near = 0, small = 0;
   for (std::size_t i = 0; i < set.size(); ++i) {
@@ -177,7 +177,7 @@ TEST_CASE("Where nothing tells records apart every radius is the largest, and c_
   const RecordSet set = step_of_noise(3000, 1);
   EstimatorRun run(Estimator::adaptive, 0.2);
   run.parameters.agree = 1e9;
-  const filter::Average adaptive = run(set);
+  const filter::Estimates adaptive = run(set);
   CHECK(adaptive.radius == std::vector<float>(set.size(), 0.2f));
   CHECK(tests::same_bytes(adaptive.c_bar, EstimatorRun(Estimator::average, 0.2)(set).c_bar));
 }
@@ -316,9 +316,9 @@ TEST_CASE("Every engine chooses the same radii") {
   for (std::size_t i = 0; i < set.size(); i += 3) set.flags[i] = filter::kHasVertex;
   EstimatorRun run(Estimator::adaptive, 0.2);
   run.parameters.agree = 2;
-  const filter::Average fast = run(set);
+  const filter::Estimates fast = run(set);
   run.parameters.engine = filter::EngineKind::plain;
-  const filter::Average plain = run(set);
+  const filter::Estimates plain = run(set);
   CHECK(fast.neighbors == plain.neighbors);
   CHECK(fast.radius == plain.radius);
   std::size_t smaller = 0;

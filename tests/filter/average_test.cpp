@@ -1,7 +1,6 @@
 // [average] and its kin agree with a second writing of the equations.
-#include "filter/average.h"
-
 #include "catch.h"
+#include "filter/estimate.h"
 #include "filter/radius.h"
 #include "oracle.h"
 
@@ -37,7 +36,7 @@ std::size_t check_case(const Case& c, std::uint32_t seed) {
   const filter::Block block{c.first_path, c.n, c.samples_per_pixel, c.cameras};
   std::vector<float> radius;
   filter::radii(parameters.radius, set.view(), block, radius);
-  const filter::Average got = filter::average(set.view(), radius, block, parameters);
+  const filter::Estimates got = filter::estimate(set.view(), radius, block, parameters);
   const tests::OracleResult expected =
       tests::Oracle(set, parameters, c.cameras, c.n, c.first_path, c.samples_per_pixel)
           .run(0, set.size());
@@ -157,9 +156,9 @@ TEST_CASE("Brute force and FLANN give the same neighbours of every record") {
   std::vector<float> radius;
   filter::radii(c.parameters.radius, set.view(), block, radius);
   c.parameters.count_refusals = true;
-  const filter::Average plain = filter::average(set.view(), radius, block, c.parameters);
+  const filter::Estimates plain = filter::estimate(set.view(), radius, block, c.parameters);
   c.parameters.engine = filter::EngineKind::brute;
-  const filter::Average brute = filter::average(set.view(), radius, block, c.parameters);
+  const filter::Estimates brute = filter::estimate(set.view(), radius, block, c.parameters);
   CHECK(plain.neighbors == brute.neighbors);
   CHECK(plain.statistics.candidates == brute.statistics.candidates);
   CHECK(plain.statistics.refused == brute.statistics.refused);

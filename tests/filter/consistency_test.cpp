@@ -3,7 +3,7 @@
 #include <random>
 
 #include "catch.h"
-#include "filter/average.h"
+#include "filter/estimate.h"
 #include "filter/radius.h"
 #include "record_set.h"
 
@@ -42,7 +42,7 @@ Errors measure(double r0, double delta, std::uint32_t passes) {
     const filter::Block block{0, double(pass), 1, kSquareCamera};
     std::vector<float> radius;
     filter::radii(parameters.radius, set.view(), block, radius);
-    const filter::Average average = filter::average(set.view(), radius, block, parameters);
+    const filter::Estimates average = filter::estimate(set.view(), radius, block, parameters);
     double bias_mean = 0, square = 0, inside = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
       bias[i] += double{average.c_bar[i].x} - double{set.contribution[i].x};

@@ -59,7 +59,7 @@ EstimatorRun run_of(Estimator estimator, double r0, std::uint64_t realization) {
 }
 
 // The mean over the paths of each pixel, red.
-std::vector<double> picture(const filter::Average& average) {
+std::vector<double> picture(const filter::Estimates& average) {
   std::vector<double> means(kPixels);
   for (std::size_t i = 0; i < average.c_bar.size(); ++i)
     means[i % kPixels] += double{average.c_bar[i].x} / kPasses;
@@ -137,7 +137,7 @@ TEST_CASE("The same over very many renderings and choices", "[.][long]") {
 TEST_CASE("A pixel has the same number of sources as any other in a multiple of K passes") {
   std::mt19937 random(3);
   for (std::uint64_t t = 0; t < 5; ++t) {
-    const filter::Average result = run_of(Estimator::control, 0.3, t)(render(random));
+    const filter::Estimates result = run_of(Estimator::control, 0.3, t)(render(random));
     std::vector<std::size_t> sources(kPixels);
     for (std::size_t i = 0; i < result.roles.size(); ++i)
       sources[i % kPixels] += result.roles[i] == filter::Role::source ? 1u : 0u;
@@ -154,7 +154,7 @@ TEST_CASE("Where contributions are known to their position, the control takes th
     RecordSet set = render(random);
     for (std::size_t i = 0; i < set.size(); ++i) set.contribution[i] = Rgb(4 + set.position[i].y);
     const EstimatorRun run = run_of(Estimator::control, 0.3, t);
-    const filter::Average result = run(set);
+    const filter::Estimates result = run(set);
     for (std::uint32_t p = 0; p < kPixels; ++p) {
       double all = 0, of_control = 0, of_sources = 0;
       for (std::size_t i = p; i < set.size(); i += kPixels) {
@@ -186,7 +186,7 @@ TEST_CASE("A lattice of shaded records weighs as its share, another share is ref
     set.flags[i] = (i % kPixels + i / kPixels) % 3 == 0 ? 3 : filter::kHasVertex;
   EstimatorRun run = run_of(Estimator::control, 0, 0);
   run.parameters.sources = 1;
-  const filter::Average result = run(set);  // r0 = 0: no control
+  const filter::Estimates result = run(set);  // r0 = 0: no control
   for (std::size_t i = 0; i < set.size(); ++i)
     REQUIRE(result.c_bar[i].x == (set.flags[i] == 3 ? 3 * set.contribution[i].x : 0));
   CHECK(filter::shade_rate(1000000, 1000000) == 1);

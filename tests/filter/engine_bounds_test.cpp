@@ -192,7 +192,7 @@ std::size_t differing(const Scene& scene) {
   std::copy(scene.reach, scene.reach + kWidth, packet.plane_reach);
   std::vector<std::uint32_t> parents(tree.nodes(filter::engine::kParents));
   std::iota(parents.begin(), parents.end(), 0u);
-  filter::engine::average(tree, scene.terms, parents, packet);
+  filter::engine::add_sources(tree, scene.terms, parents, packet);
   PairCounts counts;
   filter::engine::count_pairs(tree, scene.terms, parents, packet, counts);
   return differing(scene, packet, counts);

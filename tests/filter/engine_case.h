@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "filter/average.h"
+#include "filter/estimate.h"
 #include "record_set.h"
 
 namespace psf::tests {
@@ -33,16 +33,16 @@ struct EngineCase {
     parameters.count_refusals = true;
   }
 
-  [[nodiscard]] filter::Average filtered(filter::EngineKind kind) const {
+  [[nodiscard]] filter::Estimates filtered(filter::EngineKind kind) const {
     filter::Parameters chosen = parameters;
     chosen.engine = kind;
-    return filter::average(set.view(), radius, {0, 1, 1.5, cameras}, chosen);
+    return filter::estimate(set.view(), radius, {0, 1, 1.5, cameras}, chosen);
   }
 };
 
 // What there is to say of the first difference; nothing where there is none. `tolerance`: of
 // averages, relative; 0 asks for the same bytes.
-inline std::string difference(const filter::Average& a, const filter::Average& b,
+inline std::string difference(const filter::Estimates& a, const filter::Estimates& b,
                               float tolerance = 0) {
   for (std::size_t i = 0; i < a.c_bar.size(); ++i) {
     if (a.roles[i] != b.roles[i]) return fmt::format("role of record {}", i);

@@ -13,7 +13,7 @@ using tests::EngineCase;
 
 // Contributions tell which sources were adopted. Returns how many orphans there were.
 std::uint64_t check_orphans(const EngineCase& c) {
-  const filter::Average fast = c.filtered(Kind::flann);
+  const filter::Estimates fast = c.filtered(Kind::flann);
   CHECK(tests::difference(fast, c.filtered(Kind::plain)) == "");
   CHECK(tests::difference(fast, c.filtered(Kind::brute)) == "");
   return fast.statistics.orphans;

@@ -15,7 +15,7 @@ constexpr unsigned kDefaultTerms = 7 + 128, kAllTerms = 255;
 
 // Returns how many pairs passed.
 std::uint64_t check(const EngineCase& c, float tolerance = 0) {
-  const filter::Average fast = c.filtered(Kind::flann);
+  const filter::Estimates fast = c.filtered(Kind::flann);
   CHECK(difference(fast, c.filtered(Kind::plain), tolerance) == "");
   CHECK(difference(fast, c.filtered(Kind::brute), tolerance) == "");
   return fast.statistics.accepted;
@@ -133,8 +133,8 @@ TEST_CASE("The engines agree where averages overflow and are averaged again") {
     c.radius.assign(count, 0.5f);
     c.set.distance.assign(count, 50);
     c.parameters.iterations = 2;
-    const filter::Average result = c.filtered(Kind::flann);
-    const filter::Average plain = c.filtered(Kind::plain);
+    const filter::Estimates result = c.filtered(Kind::flann);
+    const filter::Estimates plain = c.filtered(Kind::plain);
     std::size_t differing = 0, infinite = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const float a = result.c_bar[i].x, b = plain.c_bar[i].x;

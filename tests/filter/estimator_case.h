@@ -2,30 +2,46 @@
 #pragma once
 
 #include <cstring>
+#include <string>
 #include <vector>
 
-#include "filter/average.h"
+#include "filter/estimate.h"
 #include "filter/radius.h"
 #include "record_set.h"
 
 namespace psf::tests {
 
+// Every estimator there is.
+inline std::vector<filter::Estimator> all_estimators() {
+  std::vector<filter::Estimator> all;
+  for (std::size_t k = 0; k < filter::estimators().size(); ++k) {
+    all.push_back(static_cast<filter::Estimator>(k));
+  }
+  return all;
+}
+inline std::string name_of(filter::Estimator estimator) {
+  return std::string(filter::info(estimator).name);
+}
+
+inline const std::vector<filter::CameraView> kCamera = {{30, 30, 0.05}};
+
 struct EstimatorRun {
   filter::Parameters parameters;
-  std::vector<filter::CameraView> cameras = {{30, 30, 0.05}};
+  std::vector<filter::CameraView> cameras = kCamera;
   double n = 1;
   std::uint64_t first_path = 0;
   double passes = 1;  // number of passes of the block
 
+  explicit EstimatorRun(const filter::Parameters& chosen) : parameters(chosen) {}
   explicit EstimatorRun(filter::Estimator estimator, double r0 = 0.3) {
     parameters.estimator = estimator;
     parameters.radius = {r0, filter::RadiusBasis::distance};
   }
-  [[nodiscard]] filter::Average operator()(const RecordSet& set) const {
+  [[nodiscard]] filter::Estimates operator()(const RecordSet& set) const {
     const filter::Block block{first_path, n, passes, cameras};
     std::vector<float> radius;
     filter::radii(parameters.radius, set.view(), block, radius);
-    return filter::average(set.view(), radius, block, parameters);
+    return filter::estimate(set.view(), radius, block, parameters);
   }
 };
 

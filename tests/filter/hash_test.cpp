@@ -121,7 +121,7 @@ TEST_CASE("A cell has the area of the ball's disk on a surface along the axes") 
     for (const double r : {0.06, 0.08, 0.11}) {
       const RecordSet set = patch(20000, normal, 4, 7);
       EstimatorRun run(filter::Estimator::hash, r);
-      const filter::Average result = run(set);
+      const filter::Estimates result = run(set);
       // Sources a unit of area, times pi r^2; the record itself counts, and borders cost a little.
       const double expected = 20000.0 / 16 * 3.14159265 * r * r + 1;
       INFO("r " << r);
@@ -164,7 +164,7 @@ TEST_CASE("Jitter hides the grid: neighbours across any border share cells now a
 TEST_CASE("c_bar is the mean of the sources of the cell, and sums keep their mean") {
   const RecordSet set = patch(3000, Vec3(0, 1, 0), 1, 9);
   EstimatorRun run(filter::Estimator::hash, 0.1);
-  const filter::Average result = run(set);
+  const filter::Estimates result = run(set);
   const std::vector<CellKey> keys = [&] {
     const KeyMaker maker(set.view(), run.parameters.weights, 0.1, 0);
     std::vector<CellKey> all;
@@ -194,7 +194,7 @@ TEST_CASE("Queries without a source in their cell look into coarser cells, then 
     if (i % 100 != 0) set.flags[i] = filter::kHasVertex;
   set.normal[7] = Vec3(1, 0, 0);  // nobody passes it
   EstimatorRun run(filter::Estimator::hash, 0.01);
-  const filter::Average result = run(set);
+  const filter::Estimates result = run(set);
   CHECK(result.statistics.orphans > 1000);
   CHECK(result.statistics.orphans_unmatched == 1);
   std::size_t known = 0;
@@ -217,7 +217,7 @@ TEST_CASE("An infinite radius is one cell for all that pass; a huge one does not
   parameters.estimator = filter::Estimator::hash;
   for (const float r : {std::numeric_limits<float>::infinity(), 1e30f}) {
     const std::vector<float> radius(set.size(), r);
-    const filter::Average result = filter::average(set.view(), radius, block, parameters);
+    const filter::Estimates result = filter::estimate(set.view(), radius, block, parameters);
     CHECK(result.neighbors[0] > (std::isinf(r) ? 499u : 100u));
   }
 }

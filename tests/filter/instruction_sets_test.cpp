@@ -58,7 +58,7 @@ TEST_CASE("Every instruction set gives the same bytes") {
   const std::vector<std::string> sets = instruction_sets();
   REQUIRE_FALSE(sets.empty());
   for (const EngineCase& c : cases()) {
-    const filter::Average best = c.filtered(filter::EngineKind::flann);
+    const filter::Estimates best = c.filtered(filter::EngineKind::flann);
     for (const std::string& set : sets) {
       const InstructionSetLimit limit(set);
       INFO(set << ", " << c.set.size() << " records");
@@ -113,7 +113,7 @@ TEST_CASE("Any number of threads gives the same bytes") {
       const core::ThreadLimit limit(threads);
       return c.filtered(filter::EngineKind::flann);
     };
-    const filter::Average one = with_threads(1);
+    const filter::Estimates one = with_threads(1);
     for (const std::size_t threads : {2u, 3u, 7u}) {
       INFO("terms " << terms << ", threads " << threads);
       CHECK(tests::difference(one, with_threads(threads)) == "");

@@ -68,9 +68,9 @@ std::uint64_t check_radii(const EngineCase& c, const std::vector<Radius>& radii,
     separate.count_refusals = false;
     std::vector<float> radius;
     filter::radii(radii[k], c.set.view(), block, radius);
-    const filter::Average expected = filter::average(c.set.view(), radius, block, separate);
+    const filter::Estimates expected = filter::estimate(c.set.view(), radius, block, separate);
     // Contributions tell records apart: equal averages are of the same ones.
-    filter::Average found{r.many.roles, r.c_bar[k], expected.neighbors, r.many.statistics[k]};
+    filter::Estimates found{r.many.roles, r.c_bar[k], expected.neighbors, r.many.statistics[k]};
     INFO("radius " << k << ": " << radii[k].r0 << ", delta " << radii[k].delta);
     CHECK(tests::difference(found, expected) == "");
     CHECK(found.statistics.queries == expected.statistics.queries);
@@ -194,8 +194,9 @@ TEST_CASE("Many radii agree to rounding where sums are rounded") {
     separate.radius = radii[k];
     std::vector<float> radius;
     filter::radii(radii[k], c.set.view(), block, radius);
-    const filter::Average expected = filter::average(c.set.view(), radius, block, separate);
-    const filter::Average found{r.many.roles, r.c_bar[k], expected.neighbors, r.many.statistics[k]};
+    const filter::Estimates expected = filter::estimate(c.set.view(), radius, block, separate);
+    const filter::Estimates found{r.many.roles, r.c_bar[k], expected.neighbors,
+                                  r.many.statistics[k]};
     CHECK(tests::difference(found, expected, 1e-5f) == "");
   }
 }

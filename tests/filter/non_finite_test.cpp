@@ -3,13 +3,14 @@
 #include <functional>
 
 #include "catch.h"
-#include "filter/average.h"
-#include "run_average.h"
+#include "estimator_case.h"
+#include "filter/estimate.h"
 
 namespace psf {
 namespace {
 
 using filter::Parameters;
+using tests::EstimatorRun;
 using tests::RecordSet;
 
 struct Damage {
@@ -53,14 +54,14 @@ TEST_CASE("A bad value takes its record out and changes no other") {
   while (clean.flags[victim] != 3) ++victim;
   RecordSet without = clean;
   without.flags[victim] = 0;
-  const filter::Average expected = tests::run_average(without, all_terms());
+  const filter::Estimates expected = EstimatorRun(all_terms())(without);
   for (const Damage& damage : damages()) {
     for (const float bad : {tests::kNan, tests::kInfinity, -tests::kInfinity}) {
       if (bad == tests::kInfinity && !damage.infinity_is_bad) continue;
       INFO(damage.channel << " = " << bad);
       RecordSet set = clean;
       damage.apply(set, victim, bad);
-      const filter::Average result = tests::run_average(set, all_terms());
+      const filter::Estimates result = EstimatorRun(all_terms())(set);
       CHECK(result.roles[victim] == filter::Role::left_out);
       CHECK(result.statistics.left_out == 1);
       CHECK(count_of(result.statistics, damage.channel) == 1);
@@ -73,7 +74,7 @@ TEST_CASE("A bad value takes its record out and changes no other") {
 TEST_CASE("A miss is no bad value") {
   RecordSet set(10);
   set.hit_distance.assign(10, tests::kInfinity);
-  const filter::Average result = tests::run_average(set, all_terms());
+  const filter::Estimates result = EstimatorRun(all_terms())(set);
   CHECK(result.statistics.left_out == 0);
   CHECK(result.neighbors[0] == 10);
 }
@@ -125,18 +126,18 @@ TEST_CASE("What nothing uses may be anything") {
   Parameters parameters;
   parameters.radius.basis = filter::RadiusBasis::world;
   parameters.weights = filter::WeightTerms::none();
-  CHECK(tests::run_average(set, parameters).statistics.left_out == 0);
+  CHECK(EstimatorRun(parameters)(set).statistics.left_out == 0);
   // A path without vertex has only its own radiance.
   set.flags[3] = 0;
   set.position[3].x = set.contribution[3].x = set.throughput[3].x = tests::kNan;
-  CHECK(tests::run_average(set, all_terms()).statistics.left_out == 0);
+  CHECK(EstimatorRun(all_terms())(set).statistics.left_out == 0);
   set.unfiltered[3].x = tests::kNan;
-  CHECK(tests::run_average(set, all_terms()).statistics.left_out == 1);
+  CHECK(EstimatorRun(all_terms())(set).statistics.left_out == 1);
   // An unshaded one has no contribution.
   set.unfiltered[4].x = 0;
   set.flags[4] = filter::kHasVertex;
   set.contribution[4].x = tests::kNan;
-  CHECK(tests::run_average(set, all_terms()).statistics.left_out == 1);
+  CHECK(EstimatorRun(all_terms())(set).statistics.left_out == 1);
 }
 
 TEST_CASE("A quotient that overflows counts for the reflectance") {
@@ -145,7 +146,7 @@ TEST_CASE("A quotient that overflows counts for the reflectance") {
   set.reflectance[2].y = 1e-35f;
   Parameters parameters;
   parameters.demodulate = true;
-  const filter::Average result = tests::run_average(set, parameters);
+  const filter::Estimates result = EstimatorRun(parameters)(set);
   CHECK(result.statistics.left_out == 1);
   CHECK(count_of(result.statistics, "reflectance") == 1);
   CHECK(is_finite(result.c_bar[0]));
@@ -155,7 +156,7 @@ TEST_CASE("A record may be bad in several channels and is left out once") {
   RecordSet set(10);
   set.position[1].y = tests::kInfinity;
   set.contribution[1].y = tests::kNan;
-  const filter::Statistics statistics = tests::run_average(set, {}).statistics;
+  const filter::Statistics statistics = EstimatorRun(filter::Parameters())(set).statistics;
   CHECK(statistics.left_out == 1);
   CHECK(count_of(statistics, "position") == 1);
   CHECK(count_of(statistics, "contribution") == 1);
@@ -165,7 +166,7 @@ TEST_CASE("A record may be bad in several channels and is left out once") {
 TEST_CASE("With every record bad there is nothing, and no failure") {
   RecordSet set(10);
   for (Vec3& p : set.position) p.x = tests::kNan;
-  const filter::Average result = tests::run_average(set, {});
+  const filter::Estimates result = EstimatorRun(filter::Parameters())(set);
   CHECK(result.statistics.left_out == 10);
   CHECK(result.statistics.queries == 0);
 }

@@ -1,6 +1,6 @@
 // Queries without a source in their ball get the nearest that pass, never nothing.
 #include "catch.h"
-#include "filter/average.h"
+#include "filter/estimate.h"
 #include "record_set.h"
 
 namespace psf {
@@ -8,9 +8,10 @@ namespace {
 
 const std::vector<filter::CameraView> kOrphansCamera = {{64, 64, 0.05}};
 
-filter::Average run_at(const tests::RecordSet& set, float r, const filter::Parameters& parameters) {
-  return filter::average(set.view(), std::vector<float>(set.size(), r), {0, 1, 1, kOrphansCamera},
-                         parameters);
+filter::Estimates run_at(const tests::RecordSet& set, float r,
+                         const filter::Parameters& parameters) {
+  return filter::estimate(set.view(), std::vector<float>(set.size(), r), {0, 1, 1, kOrphansCamera},
+                          parameters);
 }
 
 // Record 0 is unshaded at the origin, the others are sources at x = 1, 2, 3 ... with c = 10, 20, 30
@@ -26,7 +27,7 @@ tests::RecordSet line(std::size_t sources) {
 }
 
 TEST_CASE("An orphan takes its four nearest sources") {
-  const filter::Average result = run_at(line(9), 0.5f, {});
+  const filter::Estimates result = run_at(line(9), 0.5f, {});
   CHECK(result.c_bar[0] == Rgb(25));
   CHECK(result.neighbors[0] == 0);
   CHECK(result.roles[0] == filter::Role::query);
@@ -57,11 +58,11 @@ TEST_CASE("The search for an orphan's source ends at the last one") {
     for (std::size_t k = 1; k < sources; ++k) set.material[k] = 1;
     filter::Parameters parameters;
     parameters.weights.material = true;
-    const filter::Average result = run_at(set, 0.5f, parameters);
+    const filter::Estimates result = run_at(set, 0.5f, parameters);
     CHECK(result.c_bar[0] == Rgb(10 * static_cast<float>(sources)));
     CHECK(result.statistics.orphans_unmatched == 0);
     set.material[sources] = 1;
-    const filter::Average unmatched = run_at(set, 0.5f, parameters);
+    const filter::Estimates unmatched = run_at(set, 0.5f, parameters);
     CHECK(unmatched.c_bar[0] == Rgb(10));
     CHECK(unmatched.statistics.orphans == 1);
     CHECK(unmatched.statistics.orphans_unmatched == 1);
@@ -72,7 +73,7 @@ TEST_CASE("Without any source in the block its queries are left out and counted"
   tests::RecordSet set = line(3);
   for (auto& flags : set.flags) flags = filter::kHasVertex;
   set.flags[2] = 0;
-  const filter::Average result = run_at(set, 9, {});
+  const filter::Estimates result = run_at(set, 9, {});
   CHECK(result.statistics.without_source == 3);
   CHECK(result.roles[0] == filter::Role::left_out);
   // Where no path with a vertex is shaded, none without one is part of the picture without filter.

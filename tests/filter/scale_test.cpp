@@ -3,6 +3,7 @@
 
 #include "catch.h"
 #include "engine_case.h"
+#include "estimator_case.h"
 #include "filter/many_radii.h"
 #include "filter/radius.h"
 #include "oracle.h"
@@ -51,16 +52,15 @@ EngineCase case_of(Estimator estimator) {
 }
 
 TEST_CASE("Every search and estimator gives the same bytes in every unit of length") {
-  for (const Estimator estimator : {Estimator::average, Estimator::disk, Estimator::hash,
-                                    Estimator::control, Estimator::adaptive}) {
+  for (const Estimator estimator : tests::all_estimators()) {
     const EngineCase c = case_of(estimator);
     for (const Kind kind : {Kind::flann, Kind::plain, Kind::brute}) {
-      const filter::Average expected = c.filtered(kind);
+      const filter::Estimates expected = c.filtered(kind);
       CHECK(expected.statistics.accepted > 2 * expected.statistics.queries);
       for (const int unit : kUnits) {
         INFO("estimator " << static_cast<int>(estimator) << ", search " << static_cast<int>(kind)
                           << ", 2^" << unit);
-        const filter::Average found = scaled(c, unit).filtered(kind);
+        const filter::Estimates found = scaled(c, unit).filtered(kind);
         CHECK(difference(found, expected) == "");
         bool same_radii = found.radius.size() == expected.radius.size();
         for (std::size_t i = 0; same_radii && i < found.radius.size(); ++i) {
@@ -84,7 +84,7 @@ TEST_CASE("Neighbours in every unit of length are those of double precision") {
       const filter::Block block{0, 3, 1.5, kCameras};
       std::vector<float> radius;
       filter::radii(parameters.radius, set.view(), block, radius);
-      const filter::Average found = filter::average(set.view(), radius, block, parameters);
+      const filter::Estimates found = filter::estimate(set.view(), radius, block, parameters);
       const tests::OracleResult expected =
           tests::Oracle(set, parameters, kCameras, 3, 0, 1.5).run(0, set.size());
       std::size_t wrong = 0, neighbors = 0;
@@ -154,14 +154,14 @@ TEST_CASE("A vertex that is absurdly far away changes nothing for the others") {
   for (const float far : {1e20f, 3e38f}) {
     EngineCase c(600, 8);
     c.parameters.weights = tests::terms_of(3);
-    const filter::Average expected = c.filtered(Kind::brute);
+    const filter::Estimates expected = c.filtered(Kind::brute);
     EngineCase with = c;
     with.set.position[7] = Vec3(far, -far, far);
     with.set.flags[7] = filter::kHasVertex | filter::kShaded;
     const bool too_far_as_well = far > 1e30f;
     if (too_far_as_well) with.set.distance[7] = far;
     for (const Kind kind : {Kind::flann, Kind::plain, Kind::brute}) {
-      const filter::Average found = with.filtered(kind);
+      const filter::Estimates found = with.filtered(kind);
       std::size_t wrong = 0;
       for (std::size_t i = 0; i < c.set.size(); ++i) {
         const bool near = search::distance_sq(c.set.position[i], c.set.position[7]) < 0.05f;

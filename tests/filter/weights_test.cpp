@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "catch.h"
-#include "filter/average.h"
+#include "filter/estimate.h"
 #include "filter/radius.h"
 #include "record_set.h"
 
@@ -77,7 +77,7 @@ TEST_CASE("Each term more can only shrink the set of every record") {
     if ((bits & 32) != 0) w.direction = all.direction;
     w.material = (bits & 64) != 0;
     if ((bits & 128) != 0) w.gloss = all.gloss;
-    return filter::average(set.view(), radius, block, parameters).neighbors;
+    return filter::estimate(set.view(), radius, block, parameters).neighbors;
   };
   for (unsigned term = 1; term < 256; term *= 2) {
     std::size_t grew = 0, shrank = 0;
@@ -105,7 +105,7 @@ TEST_CASE("A term whose channel is missing is an error that names both") {
       set.normal,       set.reflectance, {},           set.hit_distance,
       set.direction,    set.material,    set.roughness};
   const filter::Block block{0, 1, 1, kWeightsCamera};
-  CHECK_THROWS_WITH(filter::average(records, std::vector<float>(3, 1.0f), block, parameters),
+  CHECK_THROWS_WITH(filter::estimate(records, std::vector<float>(3, 1.0f), block, parameters),
                     "the records have no channel visibility, which `visibility` needs");
 }
 

@@ -63,14 +63,14 @@ TEST_CASE("Many radii on a dump equal separate runs, at every number of passes")
   for (const std::string block : {"1pass", "2passes", "4passes", "2^8", "all"}) {
     INFO("blocks of " << block);
     run::ManyRequest run = many_run(block);
-    run.snapshots = {1, 2, 3, 4, 7};
+    run.n = {1, 2, 3, 4, 7};
     std::vector<std::uint64_t> seen;
-    run.on_snapshot = [&](std::uint64_t n, const run::ManyResult& outcome) {
+    run.on_pictures = [&](std::uint64_t n, const run::ManyResult& outcome) {
       seen.push_back(n);
       check(path, run, outcome, n);
     };
     const run::ManyResult outcome = run::filter_many(dump, run);
-    CHECK(seen == run.snapshots);
+    CHECK(seen == run.n);
     check(path, run, outcome, 7);
   }
 }
@@ -80,12 +80,12 @@ TEST_CASE("Radii that share no traversal equal separate runs too") {
   const std::string path = folder / "a.pvb";
   write_dump(path, random_records(900, 14, 0, kOne), {kOne, {300, 300, 300}, {}});
   const run::Dump dump(path);
-  for (const auto estimator : {filter::Estimator::average, filter::Estimator::hash,
-                               filter::Estimator::control, filter::Estimator::adaptive}) {
+  for (std::size_t k = 0; k < filter::estimators().size(); ++k) {
+    const filter::EstimatorInfo& estimator = filter::estimators()[k];
     run::ManyRequest run = many_run("2passes");
-    run.parameters.estimator = estimator;
-    if (estimator == filter::Estimator::average) run.parameters.iterations = 2;
-    INFO("estimator " << static_cast<int>(estimator));
+    run.parameters.estimator = static_cast<filter::Estimator>(k);
+    if (estimator.shares_traversal) run.parameters.iterations = 2;  // which share none
+    INFO("estimator " << estimator.name);
     check(path, run, run::filter_many(dump, run), 3);
   }
 }

@@ -38,7 +38,7 @@ Row figure(std::string name, std::string what, double value, double most) {
 
 }  // namespace
 
-void Agreement::add(const filter::Average& a, const filter::Average& b) {
+void Agreement::add(const filter::Estimates& a, const filter::Estimates& b) {
   for (std::size_t i = 0; i < a.c_bar.size(); ++i) {
     if (a.neighbors[i] != b.neighbors[i] || a.roles[i] != b.roles[i]) ++differing;
     for (int k = 0; k < 3; ++k) {
@@ -105,9 +105,9 @@ Row passes_row(const Sample& sample, const Reach& reach, std::size_t repeat) {
       for (std::size_t p = 0; p < count; ++p) {
         const std::size_t first = sample.passes[p], last = sample.passes[p + 1];
         const filter::Block block{first, 1, 1, sample.cameras};
-        static_cast<void>(filter::average(part(records, first, last),
-                                          radius.subspan(first, last - first), block,
-                                          sample.parameters));
+        static_cast<void>(filter::estimate(part(records, first, last),
+                                           radius.subspan(first, last - first), block,
+                                           sample.parameters));
       }
     });
   };

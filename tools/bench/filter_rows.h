@@ -15,7 +15,7 @@ struct Agreement {
   std::uint64_t differing = 0;  // records whose number of neighbours or role differs
   double c_bar = 0;             // largest relative difference of a component
 
-  void add(const filter::Average& a, const filter::Average& b);
+  void add(const filter::Estimates& a, const filter::Estimates& b);
 };
 [[nodiscard]] std::vector<Row> agreement_rows(const Agreement& agreement);
 

@@ -23,7 +23,7 @@ double mean_neighbors(const Sample& sample, const Reach& reach,
                       const filter::WeightTerms& weights) {
   filter::Parameters parameters = sample.parameters;
   parameters.weights = weights;
-  return filter::average(sample.records.view(), reach.radius, block_of(sample), parameters)
+  return filter::estimate(sample.records.view(), reach.radius, block_of(sample), parameters)
       .statistics.mean_neighbors();
 }
 
@@ -42,7 +42,7 @@ Run run_filter(const Sample& sample, const Reach& reach, filter::EngineKind kind
   Run run;
   run.seconds = seconds_of([&] {
     run.average =
-        filter::average(sample.records.view(), reach.radius, block_of(sample), parameters);
+        filter::estimate(sample.records.view(), reach.radius, block_of(sample), parameters);
   });
   return run;
 }

@@ -1,4 +1,4 @@
-// Times filter::average() on a sample, and finds the radius for a wanted number of neighbours.
+// Times filter::estimate() on a sample, and finds the radius for a wanted number of neighbours.
 #pragma once
 
 #include <optional>
@@ -7,7 +7,7 @@
 
 #include "bench/rows.h"
 #include "bench/sample.h"
-#include "filter/average.h"
+#include "filter/estimate.h"
 
 namespace psf::bench {
 
@@ -20,8 +20,8 @@ struct Reach {
 };
 
 struct Run {
-  filter::Average average;
-  double seconds = 0;  // time of the call of filter::average(): index, search, weights and sums
+  filter::Estimates average;
+  double seconds = 0;  // time of the call of filter::estimate(): index, search, weights and sums
 };
 
 [[nodiscard]] Run run_filter(const Sample& sample, const Reach& reach, filter::EngineKind kind);

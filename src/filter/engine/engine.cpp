@@ -18,8 +18,8 @@ class TreeEngine final : public Engine {
 
   [[nodiscard]] bool is_moderate() const { return packets_.is_moderate(); }
 
-  void average(std::span<const Rgb> values, bool count_refusals, std::span<Rgb> out,
-               std::span<std::uint32_t> neighbors, Statistics& statistics) override {
+  void apply(std::span<const Rgb> values, bool count_refusals, std::span<Rgb> out,
+             std::span<std::uint32_t> neighbors, Statistics& statistics) override {
     packets_.tree().set_values(values, p_.area);
     const std::size_t size = packets_.order().size();
     std::vector<Statistics> parts(core::range_count(size, Packets::kGrain));
@@ -27,7 +27,7 @@ class TreeEngine final : public Engine {
       core::throw_if_interrupted("no picture was written");
       Statistics& counts = parts[begin / Packets::kGrain];
       packets_.each(begin, end, [&](auto queries, auto nodes, Packet& packet) {
-        engine::average(packets_.tree(), p_.weights.terms(), nodes, packet);
+        engine::add_sources(packets_.tree(), p_.weights.terms(), nodes, packet);
         if (count_refusals) count(queries, nodes, packet, counts);
         for (std::size_t k = 0; k < queries.size(); ++k) {
           neighbors[queries[k]] = finish(packet, k, queries[k], values, out[queries[k]], counts);
@@ -48,7 +48,7 @@ class TreeEngine final : public Engine {
       ++count;
     }
     counts.add_query(count);
-    out = count > 0 ? estimate(sum, count, !p_.area.empty(), p_.radius[i], values[i])
+    out = count > 0 ? quotient(sum, count, !p_.area.empty(), p_.radius[i], values[i])
                     : average_of(adopt(packets_.tree(), packets_.index(), p_, i, p_.radius[i]),
                                  values, counts);
     return count;

@@ -102,7 +102,7 @@ std::uint64_t Floor::run(std::size_t times) {
     for (auto& sum : packet.sum) std::fill(sum, sum + kWidth, 0.0);
     std::fill(packet.count, packet.count + kWidth, 0);
     constexpr std::uint32_t kParent = 0;
-    average(state_->tree, state_->terms, {&kParent, 1}, packet);
+    add_sources(state_->tree, state_->terms, {&kParent, 1}, packet);
     passed += static_cast<std::uint64_t>(std::accumulate(packet.count, packet.count + kWidth, 0));
   }
   return passed;

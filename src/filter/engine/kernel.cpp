@@ -41,14 +41,14 @@ void extremes_on(const ColumnPlan& plan, std::size_t columns, const float* lows,
   }
 }
 
-void average_on(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
-                Packet& packet) {
+void add_sources_on(const Tree& tree, const WeightTerms& terms,
+                    std::span<const std::uint32_t> parents, Packet& packet) {
   AverageWalk(tree, terms, packet).run(parents);
 }
 
-void average_rings_on(const Tree& tree, const WeightTerms& terms,
-                      std::span<const std::uint32_t> parents, Packet& packet,
-                      const RingPacket& rings) {
+void add_to_rings_on(const Tree& tree, const WeightTerms& terms,
+                     std::span<const std::uint32_t> parents, Packet& packet,
+                     const RingPacket& rings) {
   RingWalk(tree, terms, packet, rings).run(parents);
 }
 
@@ -68,8 +68,8 @@ HWY_AFTER_NAMESPACE();
 namespace psf::filter::engine {
 
 HWY_EXPORT(extremes_on);
-HWY_EXPORT(average_on);
-HWY_EXPORT(average_rings_on);
+HWY_EXPORT(add_sources_on);
+HWY_EXPORT(add_to_rings_on);
 HWY_EXPORT(average_balls_on);
 HWY_EXPORT(count_on);
 
@@ -77,14 +77,13 @@ void extremes(const ColumnPlan& plan, std::size_t columns, const float* lows, co
               float* low, float* high) {
   HWY_DYNAMIC_DISPATCH(extremes_on)(plan, columns, lows, highs, low, high);
 }
-void average(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
-             Packet& packet) {
-  HWY_DYNAMIC_DISPATCH(average_on)(tree, terms, parents, packet);
+void add_sources(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
+                 Packet& packet) {
+  HWY_DYNAMIC_DISPATCH(add_sources_on)(tree, terms, parents, packet);
 }
-void average_rings(const Tree& tree, const WeightTerms& terms,
-                   std::span<const std::uint32_t> parents, Packet& packet,
-                   const RingPacket& rings) {
-  HWY_DYNAMIC_DISPATCH(average_rings_on)(tree, terms, parents, packet, rings);
+void add_to_rings(const Tree& tree, const WeightTerms& terms,
+                  std::span<const std::uint32_t> parents, Packet& packet, const RingPacket& rings) {
+  HWY_DYNAMIC_DISPATCH(add_to_rings_on)(tree, terms, parents, packet, rings);
 }
 void average_balls(const RingPacket& rings, std::size_t q, const RingMeans& means) {
   HWY_DYNAMIC_DISPATCH(average_balls_on)(rings, q, means);

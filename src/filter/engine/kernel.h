@@ -72,15 +72,15 @@ void extremes(const ColumnPlan& plan, std::size_t columns, const float* lows, co
 
 // Adds to the sums and counts of each query of `packet` the sources below the given parents that
 // pass chi and every term that is on. Sets packet.met_itself.
-void average(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
-             Packet& packet);
+void add_sources(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
+                 Packet& packet);
 
 // Does the same for all radii in one walk, but adds each source to its ring in `rings`. Sets
 // packet.met_itself.
-void average_rings(const Tree& tree, const WeightTerms& terms,
-                   std::span<const std::uint32_t> parents, Packet& packet, const RingPacket& rings);
+void add_to_rings(const Tree& tree, const WeightTerms& terms,
+                  std::span<const std::uint32_t> parents, Packet& packet, const RingPacket& rings);
 
-// Computes `means` of the q-th query of the packet from `rings`, after average_rings().
+// Computes `means` of the q-th query of the packet from `rings`, after add_to_rings().
 void average_balls(const RingPacket& rings, std::size_t q, const RingMeans& means);
 
 // Adds to `counts` the pairs of the packet's queries with the sources below the given parents.

@@ -80,7 +80,7 @@ class RingEngine::Range {
                            plane_reach_.begin(),
                            sums_.begin(),
                            whole_.begin()};
-    average_rings(e_.packets_.tree(), p_.weights.terms(), nodes, packet, rings);
+    add_to_rings(e_.packets_.tree(), p_.weights.terms(), nodes, packet, rings);
     for (std::size_t q = 0; q < queries.size(); ++q) {
       finish(queries[q], q, rings, packet.met_itself[q] != 0);
     }
@@ -148,7 +148,7 @@ class RingEngine::Range {
     }
     neighbors_[k] = count;
     average_[k] =
-        count == 0 ? adopt_one(i, r_i, k, adopted) : estimate(sum, count, disk, r_i, e_.values_[i]);
+        count == 0 ? adopt_one(i, r_i, k, adopted) : quotient(sum, count, disk, r_i, e_.values_[i]);
   }
 
   // What an orphan averages depends on the radius only where `plane` does.

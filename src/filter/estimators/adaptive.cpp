@@ -16,6 +16,10 @@
 namespace psf::filter {
 namespace {
 
+// The number of radii: r_i 2^(-k/2) for k = 0 ... kAdaptiveRadii - 1. The least is above the share
+// of r_i that parameters/estimators.h names.
+constexpr std::size_t kAdaptiveRadii = 8;
+
 // Ascending, the last one 1.
 std::array<double, kAdaptiveRadii> shares_of_radius() {
   std::array<double, kAdaptiveRadii> shares;
@@ -127,15 +131,21 @@ class Plain {
   std::unique_ptr<search::Search> search_;
 };
 
-}  // namespace
-
-std::vector<float> adaptive_radii(EngineKind kind, const Problem& problem,
-                                  std::span<const Rgb> values, double agree) {
+// r_i of every query; 0 for other records. The same for any engine.
+std::vector<float> adaptive_radii(const Problem& problem, std::span<const Rgb> values,
+                                  const Parameters& parameters) {
+  const EngineKind kind = parameters.engine;
   std::vector<float> radii(problem.records.size(), 0.0f);
-  if (kind != EngineKind::flann || !in_one_traversal(problem, values, agree, radii)) {
-    Plain(kind, problem, values, agree).set_radii(radii);
+  if (kind != EngineKind::flann || !in_one_traversal(problem, values, parameters.agree, radii)) {
+    Plain(kind, problem, values, parameters.agree).set_radii(radii);
   }
   return radii;
+}
+
+}  // namespace
+
+Estimates adaptive(const MethodInput& input) {
+  return apply_engine(input, {.radii = adaptive_radii, .engine = ball_engine});
 }
 
 }  // namespace psf::filter

@@ -52,11 +52,10 @@ float shrunk(double share, double mean, double mean_sq, std::uint32_t count) {
 
 class Control {
  public:
-  Control(const Records& records, std::span<const float> radius, const Block& block,
-          const Parameters& parameters)
-      : r_(records), radius_(radius), block_(block), p_(parameters) {}
+  explicit Control(const MethodInput& input)
+      : r_(input.records), radius_(input.radius), block_(input.block), p_(input.parameters) {}
 
-  Average run() {
+  Estimates run() {
     const auto start = Clock::now();
     choose();
     result_.c_bar.assign(r_.size(), Rgb(0, 0, 0));
@@ -85,8 +84,7 @@ class Control {
     Statistics& counts = result_.statistics;
     roles_ = find_roles(r_, block_, all, counts);
     if (counts.sources == 0) {
-      for (Role& role : roles_.of) role = role == Role::query ? Role::left_out : role;
-      counts.without_source = counts.queries;
+      leave_out_queries(roles_.of, counts);
       return;
     }
     k_ = std::uint64_t{shade_rate(counts.queries, counts.sources)} * p_.sources;
@@ -144,12 +142,12 @@ class Control {
     std::vector<Rgb> means(r_.size()), moments(r_.size());
     std::vector<std::uint32_t> counts(r_.size());
     Statistics unused;  // the engine counts queries of `half` as well
-    engine->average(values, false, means, counts, unused);
+    engine->apply(values, false, means, counts, unused);
     for (const std::uint32_t j : roles.sources) {
       const float y = luminance(values[j]);
       values[j] = Rgb(y, y * y, 0);
     }
-    engine->average(values, false, moments, counts, unused);
+    engine->apply(values, false, moments, counts, unused);
     for (const std::uint32_t i : roles.queries) {
       if (half_of(r_, block_, i) == half) continue;
       const std::uint32_t count = counts[i] > 0 ? counts[i] : kOrphanSources;
@@ -178,7 +176,7 @@ class Control {
   const Parameters& p_;
   Roles roles_;
   std::uint64_t k_ = 0;
-  Average result_;
+  Estimates result_;
 };
 
 }  // namespace
@@ -197,9 +195,8 @@ std::uint32_t shade_rate(std::uint64_t queries, std::uint64_t shaded) {
                   ratio));
 }
 
-Average control(const Records& records, std::span<const float> radius, const Block& block,
-                const Parameters& parameters) {
-  return Control(records, radius, block, parameters).run();
+Estimates control(const MethodInput& input) {
+  return Control(input).run();
 }
 
 }  // namespace psf::filter

@@ -2,9 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
-#include "filter/average.h"
+#include "filter/estimators/method.h"
 
 namespace psf::filter {
 
@@ -13,9 +12,7 @@ namespace psf::filter {
 // not known.
 [[nodiscard]] std::uint32_t shade_rate(std::uint64_t queries, std::uint64_t shaded);
 
-// Computes what average() returns for this estimator. c_bar holds c'_i, which may be negative;
-// `neighbors` holds the number of sources of g_i.
-[[nodiscard]] Average control(const Records& records, std::span<const float> radius,
-                              const Block& block, const Parameters& parameters);
+// c_bar holds c'_i, which may be negative; `neighbors` holds the number of sources of g_i.
+[[nodiscard]] Estimates control(const MethodInput& input);
 
 }  // namespace psf::filter

@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "filter/estimators/hash_cells.h"
 #include "filter/orphans.h"
+#include "filter/radius.h"
 #include "filter/sum.h"
 
 namespace psf::filter {
@@ -33,9 +34,9 @@ class HashEngine final : public Engine {
     fill(grid_, 0);
   }
 
-  void average(std::span<const Rgb> values, bool, std::span<Rgb> out,
-               std::span<std::uint32_t> neighbors, Statistics& statistics) override {
-    apply(grid_, values, out, neighbors);
+  void apply(std::span<const Rgb> values, bool, std::span<Rgb> out,
+             std::span<std::uint32_t> neighbors, Statistics& statistics) override {
+    share(grid_, values, out, neighbors);
     std::vector<std::uint32_t> orphans;
     for (const std::uint32_t i : alone_) {
       neighbors[i] = p_.roles.of[i] == Role::source ? 1 : 0;
@@ -65,7 +66,7 @@ class HashEngine final : public Engine {
 
   // out[i] and neighbors[i] of everyone in the grid; neighbors[i] is 0, and out[i] as it was, where
   // the cell has no source.
-  void apply(const Grid& grid, std::span<const Rgb> values, std::span<Rgb> out,
+  void share(const Grid& grid, std::span<const Rgb> values, std::span<Rgb> out,
              std::span<std::uint32_t> neighbors) const {
     core::parallel_for(grid.cells.count(), kCellGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t cell = begin; cell < end; ++cell) {
@@ -100,7 +101,7 @@ class HashEngine final : public Engine {
         if (has_cell(i)) grid.records.push_back(i);
       }
       fill(grid, coarser);
-      apply(grid, values, found, counts);
+      share(grid, values, found, counts);
       std::vector<std::uint32_t> rest;
       for (const std::uint32_t i : orphans) {
         if (has_cell(i) && counts[i] > 0) {
@@ -138,11 +139,18 @@ class HashEngine final : public Engine {
   std::vector<std::uint32_t> alone_;  // queries with r_i = 0
 };
 
+std::unique_ptr<Engine> hash_engine(const Problem& problem, const Block& block,
+                                    const Parameters& parameters) {
+  // Where r0 is 0 no record has a cell, and any scale does.
+  const double scale = radius_scale(parameters.radius, block.n);
+  return std::make_unique<HashEngine>(parameters.engine, problem, scale > 0 ? scale : 1,
+                                      block.first_path);
+}
+
 }  // namespace
 
-std::unique_ptr<Engine> make_hash(EngineKind kind, const Problem& problem, double scale,
-                                  std::uint64_t first_path) {
-  return std::make_unique<HashEngine>(kind, problem, scale, first_path);
+Estimates hash(const MethodInput& input) {
+  return apply_engine(input, {.engine = hash_engine});
 }
 
 }  // namespace psf::filter

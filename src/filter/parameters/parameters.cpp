@@ -48,34 +48,13 @@ void Parameters::validate() const {
   require(iterations >= 1, "`iterations`: at least 1");
   require(sources >= 1, "`sources`: 1/K with K >= 1");
   require(agree > 0, "`agree`: a number of standard errors above 0");
-  if (estimator == Estimator::hash) {
-    require(!weights.plane,
-            "`plane`: a plane is one record's, a cell of `estimator hash` has none; "
-            "give `plane off`");
-    require(iterations == 1,
-            "`iterations`: what a cell of `estimator hash` shares does not change "
-            "when it is averaged again; give 1");
-    require(!count_refusals, "`refusals`: counts what is in balls, and `estimator hash` has none");
-  }
-  if (estimator == Estimator::control) {
-    require(iterations == 1,
-            "`iterations`: a half of `estimator control` has averages of the "
-            "other's sources alone; give 1");
-    require(!count_refusals,
-            "`refusals`: the balls of `estimator control` hold halves; count with "
-            "`estimator average`");
+  for (const Refusal& refusal : info(estimator).refusals) {
+    require(!refusal.applies(*this), std::string(refusal.message));
   }
 }
 
 std::vector<ChannelNeed> optional_channels(const Parameters& parameters) {
   std::vector<ChannelNeed> needs;
-  const auto need = [&needs](bool wanted, std::string_view channel, std::string_view by,
-                             std::string_view instead) {
-    if (wanted) needs.push_back({channel, std::string(by), std::string(instead)});
-  };
-  const bool disk = parameters.estimator == Estimator::disk;
-  const bool hash = parameters.estimator == Estimator::hash;
-  const char* average = "give `estimator average`";
   for (std::size_t k = 0; k < kTermCount; ++k) {
     const auto term = static_cast<Term>(k);
     const TermInfo& of = info(term);
@@ -90,11 +69,24 @@ std::vector<ChannelNeed> optional_channels(const Parameters& parameters) {
                        fmt::format(fmt::runtime(instead), of.name), term});
     }
   }
-  need(disk, "normal", "`estimator disk`", average);
-  need(hash, "normal", "`estimator hash`", average);
-  need(parameters.demodulate, "reflectance", "`demodulate`", "leave `demodulate` out");
-  need(disk, "direction", "`estimator disk`", average);
+  const EstimatorInfo& estimator = info(parameters.estimator);
+  for (const std::string_view channel : estimator.channels) {
+    if (channel.empty()) continue;
+    needs.push_back(
+        {channel, fmt::format("`estimator {}`", estimator.name), "give `estimator average`"});
+  }
+  if (parameters.demodulate) {
+    needs.push_back({"reflectance", "`demodulate`", "leave `demodulate` out"});
+  }
   return needs;
+}
+
+bool needs_distance(const Parameters& parameters) {
+  return parameters.radius.basis != RadiusBasis::world || info(parameters.estimator).is_over_area;
+}
+bool needs_angle(const Parameters& parameters) {
+  return parameters.radius.basis == RadiusBasis::footprint ||
+         info(parameters.estimator).is_over_area;
 }
 
 }  // namespace psf::filter

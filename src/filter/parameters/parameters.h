@@ -1,13 +1,13 @@
 // Every parameter of the filter, with its default. The equations are in README.md.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "filter/parameters/estimators.h"
 #include "filter/parameters/terms.h"
 
 namespace psf::filter {
@@ -44,16 +44,6 @@ struct BlockSize {
   std::uint64_t passes = 4;               // passes: this many, >= 1; measured in README.md
 };
 
-enum class Estimator : std::uint8_t {
-  average,  // [average]
-  disk,     // [disk], as in photon mapping: the sum over the area of the ball's disk
-  hash,     // [hash]: averages over the cells of a jittered grid, without search
-  control,  // [control]: each half of the sources as control variate of the other; unbiased
-  adaptive  // [adaptive]: [average] in the largest ball whose contributions agree
-};
-inline constexpr std::array<const char*, 5> kEstimatorNames = {"average", "disk", "hash", "control",
-                                                               "adaptive"};
-
 // What finds the neighbours; the result is the same.
 enum class EngineKind : std::uint8_t {
   flann,  // engine/: FLANN over groups of records
@@ -89,5 +79,8 @@ struct ChannelNeed {
 // The channels that `parameters` need in addition to `position`, `throughput`, `contribution`,
 // `distance` and `pixel`, which every dump has.
 [[nodiscard]] std::vector<ChannelNeed> optional_channels(const Parameters& parameters);
+// Whether d_i, and whether the cameras' angle per pixel, is used: by the radius or by the estimator.
+[[nodiscard]] bool needs_distance(const Parameters& parameters);
+[[nodiscard]] bool needs_angle(const Parameters& parameters);
 
 }  // namespace psf::filter

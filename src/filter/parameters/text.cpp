@@ -41,9 +41,8 @@ std::string to_text(bool on) {
 }
 
 // The place of `text` among the names of an enumeration, as the value that has it.
-template <class Enum, std::size_t kCount>
-Enum parse_name(const char* name, const std::string& text,
-                const std::array<const char*, kCount>& names) {
+template <class Enum, class Names>
+Enum parse_name(const char* name, const std::string& text, const Names& names) {
   const auto found = std::find(names.begin(), names.end(), text);
   if (found == names.end())
     refuse(name, text, fmt::format("is none: write {}", fmt::join(names, ", ")));
@@ -148,6 +147,32 @@ constexpr Parameter term_row() {
           set_term<kTerm>};
 }
 
+std::vector<std::string_view> estimator_names() {
+  std::vector<std::string_view> names;
+  for (const EstimatorInfo& estimator : estimators()) names.push_back(estimator.name);
+  return names;
+}
+
+Parameter estimator_row() {
+  static const std::string type = fmt::format("{}", fmt::join(estimator_names(), "|"));
+  static const std::string help = [] {
+    std::vector<std::string> parts;
+    for (const EstimatorInfo& e : estimators()) {
+      parts.push_back(fmt::format("{}{}{}", e.name, e.meaning.empty() ? "" : ": ", e.meaning));
+    }
+    return fmt::format("{}", fmt::join(parts, "; "));
+  }();
+  return {"estimator",
+          type.c_str(),
+          help.c_str(),
+          "as of psf filter: average,disk,...",
+          {},
+          [](const Parameters& p) { return std::string(info(p.estimator).name); },
+          [](Parameters& p, const std::string& text) {
+            p.estimator = parse_name<Estimator>("estimator", text, estimator_names());
+          }};
+}
+
 constexpr std::array<const char*, 2> kCountNames = {"samples", "blocks"};         // of RadiusCount
 constexpr std::array<const char*, 3> kEngineNames = {"flann", "plain", "brute"};  // of EngineKind
 
@@ -219,18 +244,7 @@ const Parameter kTable[] = {
      {},
      [](const Parameters& p) { return fmt::format("1/{}", p.sources); },
      [](Parameters& p, const std::string& text) { p.sources = parse_sources(text); }},
-    {"estimator",
-     "average|disk|hash|control|adaptive",
-     "average; disk: photon mapping's; hash: cells of a jittered grid; control: halves as control "
-     "variates, unbiased; adaptive: balls whose contributions agree",
-     "as of psf filter: average,disk,...",
-     {},
-     [](const Parameters& p) {
-       return std::string(kEstimatorNames[static_cast<std::size_t>(p.estimator)]);
-     },
-     [](Parameters& p, const std::string& text) {
-       p.estimator = parse_name<Estimator>("estimator", text, kEstimatorNames);
-     }},
+    estimator_row(),
     // Its text is "off" where it means nothing, and "off" leaves it as it is.
     {"agree",
      "N",
@@ -239,7 +253,7 @@ const Parameter kTable[] = {
      "standard errors, of the estimator adaptive",
      {},
      [](const Parameters& p) {
-       return p.estimator == Estimator::adaptive ? fmt::format("{}", p.agree) : std::string("off");
+       return info(p.estimator).least_share < 1 ? fmt::format("{}", p.agree) : std::string("off");
      },
      [](Parameters& p, const std::string& text) {
        if (text != "off") p.agree = parse_number<double>("agree", text);

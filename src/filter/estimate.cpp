@@ -1,0 +1,32 @@
+#include "filter/estimate.h"
+
+#include <array>
+
+#include "filter/estimators/adaptive.h"
+#include "filter/estimators/average.h"
+#include "filter/estimators/control.h"
+#include "filter/estimators/disk.h"
+#include "filter/estimators/hash.h"
+#include "filter/inputs.h"
+#include "filter/scaled.h"
+
+namespace psf::filter {
+namespace {
+
+// By the value of Estimator.
+constexpr std::array kMethods = {average, disk, hash, control, adaptive};
+
+}  // namespace
+
+Estimates estimate(const Records& records, std::span<const float> radius, const Block& block,
+                   const Parameters& parameters) {
+  parameters.validate();
+  require_channels(records, parameters);
+  const Scaled scaled(records, radius, info(parameters.estimator).least_share);
+  const Method method = kMethods[static_cast<std::size_t>(parameters.estimator)];
+  Estimates result = method({scaled.records(), scaled.radius(), block, parameters});
+  for (float& r_i : result.radius) r_i = scaled.to_world(r_i);
+  return result;
+}
+
+}  // namespace psf::filter

@@ -1,0 +1,47 @@
+#include "filter/memory.h"
+
+#include <string_view>
+#include <type_traits>
+
+#include "filter/channels.h"
+
+namespace psf::filter {
+namespace {
+
+constexpr std::uint64_t kVector = 12, kWord = 4, kSum = 24;  // 3 floats, 1 float, 3 doubles
+
+// Bytes per record of what the terms compare, each channel once.
+std::uint64_t compared(const Parameters& parameters) {
+  std::uint64_t bytes = 0;
+  for_each_channel([&](std::string_view name, const auto& member) {
+    using Value = typename std::decay_t<decltype(member(std::declval<Records&>()))>::value_type;
+    for (const ChannelNeed& need : optional_channels(parameters)) {
+      if (!need.term || need.channel != name) continue;
+      bytes += sizeof(Value);
+      return;
+    }
+  });
+  return bytes;
+}
+
+}  // namespace
+
+std::uint64_t memory_per_record(const Parameters& parameters) {
+  constexpr std::uint64_t kGroup = 16, kQuad = 4;         // records of nodes in engine/tree.h
+  constexpr std::uint64_t kResult = kVector + kWord + 1;  // c_bar, neighbours, role
+  constexpr std::uint64_t kLists = 4 * kWord;  // queries and sources, ascending and in order
+  constexpr std::uint64_t kRadius = kWord;
+  constexpr std::uint64_t kQuads = (2 * kVector + kSum) / kQuad;
+  constexpr std::uint64_t kParents = 2;  // per 256 records: node, point of the index, statistics
+
+  const EstimatorInfo& estimator = info(parameters.estimator);
+  std::uint64_t bytes = kResult + kLists + kRadius + estimator.bytes;
+  if (!estimator.has_tree) return bytes;
+  const std::uint64_t columns = kVector + compared(parameters);  // with positions
+  const std::uint64_t groups = (2 * columns + kSum + kGroup - 1) / kGroup;
+  bytes += columns + kSum + kQuads + groups + kParents;
+  if (parameters.demodulate || parameters.iterations > 1) bytes += kVector;  // values to average
+  return bytes;
+}
+
+}  // namespace psf::filter

@@ -1,0 +1,64 @@
+#include "filter/parameters/estimators.h"
+
+#include "filter/parameters/parameters.h"
+
+namespace psf::filter {
+namespace {
+
+constexpr std::uint64_t kVector = 12, kWord = 4;  // bytes of 3 floats, of one
+
+constexpr Refusal kHashRefusals[] = {
+    {[](const Parameters& p) { return p.weights.plane.has_value(); },
+     "`plane`: a plane is one record's, a cell of `estimator hash` has none; give `plane off`"},
+    {[](const Parameters& p) { return p.iterations != 1; },
+     "`iterations`: what a cell of `estimator hash` shares does not change when it is averaged "
+     "again; give 1"},
+    {[](const Parameters& p) { return p.count_refusals; },
+     "`refusals`: counts what is in balls, and `estimator hash` has none"},
+};
+
+constexpr Refusal kControlRefusals[] = {
+    {[](const Parameters& p) { return p.iterations != 1; },
+     "`iterations`: a half of `estimator control` has averages of the other's sources alone; give "
+     "1"},
+    {[](const Parameters& p) { return p.count_refusals; },
+     "`refusals`: the balls of `estimator control` hold halves; count with `estimator average`"},
+};
+
+constexpr EstimatorInfo kEstimators[] = {
+    {.name = "average", .meaning = "", .shares_traversal = true},
+    {.name = "disk",
+     .meaning = "photon mapping's",
+     .channels = {"normal", "direction"},
+     .is_over_area = true,
+     .shares_traversal = true,
+     .bytes = kWord},  // areas
+    {.name = "hash",
+     .meaning = "cells of a jittered grid",
+     .channels = {"normal"},
+     .refusals = kHashRefusals,
+     .is_of_ball = false,
+     // A key, its hash, two entries to sort, and places in cells, twice for orphans.
+     .bytes = 96 + 64 + kVector,
+     .has_tree = false},
+    {.name = "control",
+     .meaning = "halves as control variates, unbiased",
+     .refusals = kControlRefusals,
+     .is_of_ball = false,
+     // Values, means, moments, counts, and the roles of a half, whose tree is smaller.
+     .bytes = 3 * kVector + 3 * kWord + 1},
+    {.name = "adaptive",
+     .meaning = "balls whose contributions agree",
+     .least_share = 1.0 / 16,
+     // Radii in float and in double, and luminances. Its tree for rings is freed before the tree
+     // for averages is built.
+     .bytes = kWord + 2 * kWord + kVector},
+};
+
+}  // namespace
+
+std::span<const EstimatorInfo> estimators() {
+  return kEstimators;
+}
+
+}  // namespace psf::filter

@@ -1,0 +1,56 @@
+// The estimators of c_bar: which there are, what each needs, takes and refuses, in one table. How
+// an estimator computes is in estimators/.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace psf::filter {
+
+enum class Estimator : std::uint8_t {
+  average,  // [average]
+  disk,     // [disk], as in photon mapping: the sum over the area of the ball's disk
+  hash,     // [hash]: averages over the cells of a jittered grid, without search
+  control,  // [control]: each half of the sources as control variate of the other; unbiased
+  adaptive  // [adaptive]: [average] in the largest ball whose contributions agree
+};
+
+struct Parameters;
+
+// What does not go with an estimator.
+struct Refusal {
+  bool (*applies)(const Parameters&);
+  std::string_view message;  // "`plane`: why not; what to give instead"
+};
+
+struct EstimatorInfo {
+  std::string_view name;
+  std::string_view meaning;  // in a few words, for a help; "" where the name says it
+  // The channels it needs beside those that every dump has and those of the weights; "": none.
+  std::array<std::string_view, 2> channels = {};
+  std::span<const Refusal> refusals = {};
+  // c_bar_i is made of the sources in the ball of i, so that pairs can be counted and explained.
+  bool is_of_ball = true;
+  // Its sums are over the area of the ball's disk, not over their number: it needs the distance and
+  // the camera's angle per pixel.
+  bool is_over_area = false;
+  // average_many() finds what it gives for many radii in one traversal.
+  bool shares_traversal = false;
+  // The least share of r_i that it uses as a radius. Below 1: it chooses radii of its own, as the
+  // parameter `agree` says.
+  double least_share = 1;
+  // Memory in bytes per record beside the tree over the sources, where it has one.
+  std::uint64_t bytes = 0;
+  bool has_tree = true;
+};
+
+// By the value of Estimator.
+[[nodiscard]] std::span<const EstimatorInfo> estimators();
+[[nodiscard]] inline const EstimatorInfo& info(Estimator estimator) {
+  return estimators()[static_cast<std::size_t>(estimator)];
+}
+
+}  // namespace psf::filter
