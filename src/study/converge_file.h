@@ -9,15 +9,10 @@
 #include <vector>
 
 #include "study/converge.h"
+#include "study/render_time.h"
 #include "study/study_file.h"
 
 namespace psf::study {
-
-// The seconds that rendering a pass takes, as in psf-render's --json.
-struct RenderTime {
-  double render = 0;  // without writing the dump
-  double dump = 0;    // for writing the dump
-};
 
 // The gain of a set at n passes over the same renderer without filter. Beyond the measured passes,
 // the error without filter is assumed to fall as 1 / n.

@@ -2,12 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <deque>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -18,12 +14,12 @@
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
-#include "core/unfinished.h"
 #include "filter_options.h"
 #include "notes.h"
 #include "parameter_lists.h"
-#include "study/analytic.h"
+#include "study/analytic_check.h"
 #include "study/converge_file.h"
+#include "study/render_time.h"
 #include "study_folder.h"
 #include "text.h"
 #include "verbs.h"
@@ -40,35 +36,6 @@ struct ConvergeOptions {
   bool all_metrics = false, no_times = false, analytic = false;
 };
 
-// Means over the files that psf-render --json wrote.
-study::RenderTime read_render_time(const std::vector<std::string>& paths) {
-  study::RenderTime mean;
-  for (const std::string& path : paths) {
-    std::ifstream file(path);
-    if (!file) throw Error(ErrorCode::io, path + ": cannot be read");
-    const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
-    const auto number = [&](const char* key) {
-      if (json.is_object() && json.contains(key) && json[key].is_number()) {
-        return json[key].get<double>();
-      }
-      throw Error(
-          ErrorCode::bad_input,
-          fmt::format("{}: has no number '{}'; give what psf-render --json wrote", path, key));
-    };
-    const double passes = number("passes"), output = number("output_seconds");
-    mean.render += (number("seconds") - output) / passes;
-    mean.dump += output / passes;
-  }
-  const auto count = static_cast<double>(paths.size());
-  return {mean.render / count, mean.dump / count};
-}
-
-void keep_progress(study::ConvergeRequest& convergence, core::Progress& progress) {
-  convergence.on_progress = [&progress](std::uint64_t done, std::uint64_t total) {
-    progress.advance(done, total);
-  };
-}
-
 void write(const std::string& folder, const study::ConvergeReport& report) {
   const std::filesystem::path path(folder);
   core::write_text_file((path / "converge.csv").string(), study::to_csv(report));
@@ -82,6 +49,50 @@ void refuse_to_overwrite(const std::string& folder) {
   }
 }
 
+// What the report says of the study before it is made. Switches off the terms of `sets` whose
+// channels a dump lacks, and says so in `notes`.
+study::ConvergeReport describe(const ConvergeOptions& options, const StudyFolder& folder,
+                               const metrics::Reference& reference,
+                               std::vector<filter::Parameters>& sets,
+                               std::vector<std::string>& notes) {
+  study::ConvergeReport report;
+  report.version = kVersion;
+  if (!options.render_figures.empty()) {
+    report.time = study::read_render_time(options.render_figures);
+  }
+  report.measured = reference.metrics();
+  report.metrics = study::describe_metrics(report.measured, folder.metric_options());
+  report.reference = study::describe_reference(options.study.reference, folder.reference_picture());
+  for (const std::string& path : options.inputs) {
+    const run::Dump replicate(path);
+    fit_terms(replicate, sets, filter::asked_terms(options.lists.given), notes);
+    report.inputs.push_back(
+        study::describe_input(replicate, {0, folder.passes().last}, folder.camera()));
+  }
+  return report;
+}
+
+void make_folder(const ConvergeOptions& options, const StudyFolder& folder,
+                 const study::ConvergeRequest& request) {
+  std::vector<std::string> inputs = options.inputs, names = {"converge.json", "converge.csv"};
+  inputs.insert(inputs.end(), options.render_figures.begin(), options.render_figures.end());
+  for (std::size_t series = 0; options.study.pictures && series <= request.sets.size(); ++series) {
+    for (const std::uint64_t n : request.n) names.push_back(study::picture_name(series, n));
+  }
+  folder.make(std::move(inputs), names, options.common.json);
+}
+
+void print_and_write(const ConvergeOptions& options, const std::string& folder,
+                     const study::ConvergeReport& report) {
+  write(folder, report);
+  print_convergence(report);
+  fmt::print("wrote {} and converge.csv\n",
+             (std::filesystem::path(folder) / "converge.json").string());
+  if (!options.common.json.empty()) {
+    core::write_json_file(options.common.json, study::to_json(report), 1);
+  }
+}
+
 void run_dumps(const ConvergeOptions& options) {
   std::vector<filter::Parameters> sets = all_sets(options.lists);
   const run::Dump dump(options.inputs.front());
@@ -91,158 +102,55 @@ void run_dumps(const ConvergeOptions& options) {
   if (folder.passes().first != 0) {
     throw Error(ErrorCode::usage, "--passes: a convergence study begins with the first pass");
   }
-  study::ConvergeReport report;
-  report.version = kVersion;
-  if (!options.render_figures.empty()) report.time = read_render_time(options.render_figures);
-  const std::span<const metrics::Metric> measured =
+  const metrics::Reference reference(
+      folder.reference_picture(), folder.width(), folder.metric_options(),
       options.all_metrics ? std::span<const metrics::Metric>(metrics::kAllMetrics)
-                          : std::span<const metrics::Metric>(metrics::kPixelMetrics);
-  const metrics::Reference reference(folder.reference_picture(), folder.width(),
-                                     folder.metric_options(), measured);
-  report.measured = measured;
-  report.metrics = study::describe_metrics(measured, folder.metric_options());
-  report.reference = study::describe_reference(options.study.reference, folder.reference_picture());
-  for (const std::string& path : options.inputs) {
-    const run::Dump replicate(path);
-    fit_terms(replicate, sets, filter::asked_terms(options.lists.given), notes);
-    report.inputs.push_back(
-        study::describe_input(replicate, {0, folder.passes().last}, folder.camera()));
-  }
-
-  study::ConvergeRequest convergence;
-  convergence.sets = sets;
-  convergence.n = study::powers_up_to(run::last_pass(dump, folder.passes()));
-  convergence.camera = folder.camera();
-  convergence.with_times = !options.no_times;
-  convergence.max_memory = options.study.max_memory;
-  std::vector<std::string> inputs = options.inputs, names = {"converge.json", "converge.csv"};
-  inputs.insert(inputs.end(), options.render_figures.begin(), options.render_figures.end());
-  for (std::size_t series = 0; options.study.pictures && series <= sets.size(); ++series) {
-    for (const std::uint64_t n : convergence.n) names.push_back(study::picture_name(series, n));
-  }
-  folder.make(std::move(inputs), names, options.common.json);
+                          : std::span<const metrics::Metric>(metrics::kPixelMetrics));
+  study::ConvergeReport report = describe(options, folder, reference, sets, notes);
+  study::ConvergeRequest request;
+  request.sets = sets;
+  request.n = study::powers_up_to(run::last_pass(dump, folder.passes()));
+  request.camera = folder.camera();
+  request.with_times = !options.no_times;
+  request.max_memory = options.study.max_memory;
+  make_folder(options, folder, request);
   print_notes(notes, options.common.quiet);
   core::Progress progress("converge", options.common.quiet);
-  keep_progress(convergence, progress);
+  request.on_progress = [&progress](std::uint64_t done, std::uint64_t total) {
+    progress.advance(done, total);
+  };
   if (options.study.pictures) {
     report.with_pictures = true;
     report.reference["picture"] = "reference.exr";
     folder.write_reference();
-    convergence.on_picture = [&](std::optional<std::size_t> set, std::uint64_t n,
-                                 const std::vector<Rgb>& picture) {
+    request.on_picture = [&](std::optional<std::size_t> set, std::uint64_t n,
+                             const std::vector<Rgb>& picture) {
       folder.write(study::picture_name(set ? *set + 1 : 0, n), picture,
                    set ? std::optional(sets[*set]) : std::nullopt);
     };
   }
-  report.series =
-      study::converge(options.inputs, reference, folder.reference_picture(), convergence);
+  report.series = study::converge(options.inputs, reference, folder.reference_picture(), request);
   progress.finish();
   if (report.time && !options.no_times) {
     report.speed_ups = study::speed_ups(report.series, *report.time);
   }
-  write(folder.path(), report);
-  print_convergence(report);
-  fmt::print("wrote {} and converge.csv\n",
-             (std::filesystem::path(folder.path()) / "converge.json").string());
-  if (!options.common.json.empty()) {
-    core::write_json_file(options.common.json, study::to_json(report), 1);
-  }
+  print_and_write(options, folder.path(), report);
 }
 
-// The built-in scenes: are the slopes those of theory?
-constexpr std::size_t kReplicates = 6;
-constexpr std::uint64_t kPasses = 64;
-constexpr std::uint64_t kFitFrom = 2;  // passes
-constexpr double kTolerance = 0.1;     // allowed difference of a slope
-
-std::vector<study::SlopeCheck> check_slopes(const study::Analytic& scene,
-                                            const std::vector<study::ConvergeSeries>& series,
-                                            double epsilon, const study::Rectangle& inside) {
-  std::vector<study::SlopeCheck> checks;
-  for (std::size_t k = 1; k < series.size(); ++k) {
-    const filter::Radius& radius = series[k].parameters->radius;
-    std::vector<double> n, bias_sq, variance, bias_sq_theory, variance_theory;
-    for (const study::ConvergePoint& point : series[k].points) {
-      if (point.n < kFitFrom) continue;
-      n.push_back(static_cast<double>(point.n));
-      bias_sq.push_back(point.parts.bias_sq);
-      variance.push_back(point.parts.variance);
-      bias_sq_theory.push_back(scene.bias_sq(radius, point.n, epsilon, inside));
-      variance_theory.push_back(point.theory.variance);
-    }
-    const auto add = [&](const char* quantity, const std::vector<double>& measured,
-                         const std::vector<double>& theory) {
-      study::SlopeCheck check{k, quantity, study::fitted_slope(n, measured),
-                              study::fitted_slope(n, theory), false};
-      check.passed = std::abs(check.measured - check.theory) <= kTolerance;
-      checks.push_back(check);
-    };
-    add("bias_sq", bias_sq, bias_sq_theory);
-    add("variance", variance, variance_theory);
-  }
-  return checks;
-}
-
-// Dumps of a scene in a folder of their own, there as long as they are needed, whatever happens.
-class Replicates {
- public:
-  Replicates(const study::Analytic& scene, const std::filesystem::path& around)
-      : folder_((around / fmt::format(".{}.partial", getpid())).string()), own_folder_(folder_) {
-    std::filesystem::create_directory(folder_);
-    for (std::size_t r = 0; r < kReplicates; ++r) {
-      dumps_.push_back(fmt::format("{}/{}.pvb", folder_, r));
-      own_dumps_.emplace_back(dumps_.back());
-      scene.write_dump(dumps_.back(), r + 1, kPasses);
-    }
-  }
-  [[nodiscard]] const std::vector<std::string>& dumps() const { return dumps_; }
-
- private:
-  std::string folder_;
-  std::vector<std::string> dumps_;
-  core::Unfinished own_folder_;
-  std::deque<core::Unfinished> own_dumps_;
-};
-
-bool run_analytic(const ConvergeOptions& options, study::AnalyticScene which,
-                  std::vector<filter::Parameters> sets) {
-  const study::Analytic scene(which);
-  const std::filesystem::path folder = std::filesystem::path(options.study.folder) / scene.name();
+bool run_analytic(const ConvergeOptions& options, study::AnalyticScene scene,
+                  std::span<const filter::Parameters> sets) {
+  const std::string name = study::Analytic(scene).name();
+  const std::string folder = (std::filesystem::path(options.study.folder) / name).string();
   std::filesystem::create_directories(folder);
-  refuse_to_overwrite(folder.string());
-  double largest = 0;
-  for (filter::Parameters& set : sets) {
-    set.block = {filter::BlockSize::Kind::passes, 2, 16, 1};
-    set.weights = filter::WeightTerms::none();
-    set.radius.basis = filter::RadiusBasis::footprint;
-    largest = std::max(largest, set.radius.r0);
-  }
-  const Replicates replicates(scene, folder);
-  const std::vector<std::string>& dumps = replicates.dumps();
-  const std::vector<Rgb> picture = scene.reference();
-  metrics::MetricOptions metric_options;
-  const metrics::Reference reference(picture, study::Analytic::kSize, metric_options,
-                                     metrics::kPixelMetrics);
-  study::ConvergeRequest convergence;
-  convergence.sets = sets;
-  convergence.n = study::powers_up_to(kPasses);
-  convergence.with_times = false;
-  convergence.region = study::Analytic::inside(largest);
-  core::Progress progress(scene.name(), options.common.quiet);
-  keep_progress(convergence, progress);
-  study::ConvergeReport report;
-  report.version = kVersion;
-  report.measured = metrics::kPixelMetrics;
-  report.metrics = study::describe_metrics(metrics::kPixelMetrics, metric_options);
-  report.reference = study::describe_reference("closed form", picture);
-  for (const std::string& path : dumps) {
-    report.inputs.push_back(study::describe_input(run::Dump(path), {}, 0));
-  }
-  report.series = study::converge(dumps, reference, picture, convergence);
+  refuse_to_overwrite(folder);
+  core::Progress progress(name, options.common.quiet);
+  study::ConvergeReport report = study::check_analytic(
+      scene, sets, folder,
+      [&progress](std::uint64_t done, std::uint64_t total) { progress.advance(done, total); });
   progress.finish();
-  report.checks = check_slopes(scene, report.series, metric_options.epsilon, convergence.region);
-  write(folder.string(), report);
-  fmt::print("{}\n", scene.name());
+  report.version = kVersion;
+  write(folder, report);
+  fmt::print("{}\n", name);
   print_checks(report);
   return std::all_of(report.checks.begin(), report.checks.end(),
                      [](const study::SlopeCheck& check) { return check.passed; });

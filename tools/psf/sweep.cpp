@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,55 @@ void print_best(const study::Json& json, metrics::Metric metric) {
   fmt::print("{:>4}  {:>10.4g}  unfiltered\n", "", value_of(json["unfiltered"]));
 }
 
+// What runs of the sweep write, beside the tables. Rows are numbered in the order in which they are
+// done.
+std::vector<std::string> file_names(const SweepOptions& options, const study::SweepFile& file,
+                                    std::size_t new_rows) {
+  const std::size_t rows = file.json()["rows"].size();
+  std::vector<std::string> names = {"sweep.json", "sweep.csv"};
+  for (std::size_t k = 0; options.study.pictures && k < new_rows; ++k) {
+    names.push_back(study::SweepFile::id(rows + k) + ".exr");
+  }
+  if (options.study.pictures && !file.has_unfiltered()) names.emplace_back("unfiltered.exr");
+  return names;
+}
+
+// Filters with the sets that are missing in the file, and adds their rows to it.
+void fill(study::SweepFile& file, std::span<const filter::Parameters> missing,
+          const run::Dump& dump, const StudyFolder& folder, const SweepOptions& options) {
+  const bool pictures = options.study.pictures;
+  const metrics::Reference reference(folder.reference_picture(), folder.width(),
+                                     folder.metric_options());
+  if (pictures) {
+    folder.write_reference();
+    file.set_reference_picture("reference.exr");
+  }
+  core::Progress progress("sweep", options.common.quiet);
+  study::SweepRequest sweep;
+  sweep.rows = missing;
+  sweep.passes = folder.passes();
+  sweep.camera = folder.camera();
+  sweep.max_memory = options.study.max_memory;
+  sweep.on_progress = [&](std::uint64_t done, std::uint64_t total) {
+    progress.advance(done, total, fmt::format("{} rows", file.json()["rows"].size()));
+  };
+  sweep.on_unfiltered = [&](const metrics::Metrics& metrics, const std::vector<Rgb>& picture) {
+    if (file.has_unfiltered()) return;
+    const std::string name = pictures ? "unfiltered.exr" : "";
+    if (!name.empty()) folder.write(name, picture, {});
+    file.set_unfiltered(metrics, metrics::kAllMetrics, name);
+  };
+  sweep.on_row = [&](std::size_t, const study::SweepRow& row, const std::vector<Rgb>& picture) {
+    const std::string name = pictures ? file.next_id() + ".exr" : "";
+    if (!name.empty()) folder.write(name, picture, row.parameters);
+    file.add(row, metrics::kAllMetrics, name);
+  };
+  sweep.on_traversal = [&] { file.write(); };
+  if (!missing.empty()) study::run_sweep(dump, reference, sweep);
+  progress.finish();
+  file.write();
+}
+
 void run(const SweepOptions& options) {
   keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
@@ -100,46 +150,9 @@ void run(const SweepOptions& options) {
   for (const filter::Parameters& set : asked) {
     if (!file.has(set)) missing.push_back(set);
   }
-  // Rows are numbered in the order in which they are done.
-  const std::size_t rows = file.json()["rows"].size();
-  std::vector<std::string> names = {"sweep.json", "sweep.csv"};
-  for (std::size_t k = 0; options.study.pictures && k < missing.size(); ++k) {
-    names.push_back(study::SweepFile::id(rows + k) + ".exr");
-  }
-  if (options.study.pictures && !file.has_unfiltered()) names.emplace_back("unfiltered.exr");
-  folder.make({options.input}, names, options.common.json);
+  folder.make({options.input}, file_names(options, file, missing.size()), options.common.json);
   print_notes(notes, options.common.quiet);
-  const metrics::Reference reference(folder.reference_picture(), folder.width(),
-                                     folder.metric_options());
-  if (options.study.pictures) {
-    folder.write_reference();
-    file.set_reference_picture("reference.exr");
-  }
-
-  core::Progress progress("sweep", options.common.quiet);
-  study::SweepRequest sweep;
-  sweep.rows = missing;
-  sweep.passes = folder.passes();
-  sweep.camera = folder.camera();
-  sweep.max_memory = options.study.max_memory;
-  sweep.on_progress = [&](std::uint64_t done, std::uint64_t total) {
-    progress.advance(done, total, fmt::format("{} rows", file.json()["rows"].size()));
-  };
-  sweep.on_unfiltered = [&](const metrics::Metrics& metrics, const std::vector<Rgb>& picture) {
-    if (file.has_unfiltered()) return;
-    const std::string name = options.study.pictures ? "unfiltered.exr" : "";
-    if (!name.empty()) folder.write(name, picture, {});
-    file.set_unfiltered(metrics, metrics::kAllMetrics, name);
-  };
-  sweep.on_row = [&](std::size_t, const study::SweepRow& row, const std::vector<Rgb>& picture) {
-    const std::string name = options.study.pictures ? file.next_id() + ".exr" : "";
-    if (!name.empty()) folder.write(name, picture, row.parameters);
-    file.add(row, metrics::kAllMetrics, name);
-  };
-  sweep.on_traversal = [&] { file.write(); };
-  if (!missing.empty()) study::run_sweep(dump, reference, sweep);
-  progress.finish();
-  file.write();
+  fill(file, missing, dump, folder, options);
 
   print_best(file.json(), folder.metric());
   fmt::print("{} done now, {} were there; wrote {} and sweep.csv\n",
