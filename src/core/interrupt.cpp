@@ -17,6 +17,8 @@ namespace {
 // timeout(1) sends its signal twice, to the program and to its group, within microseconds.
 constexpr std::int64_t kOneSignal = 50'000'000;  // nanoseconds
 
+thread_local const std::atomic<bool>* stopped_here = nullptr;
+
 std::atomic<std::int64_t> first{0};  // time of the first signal; 0: none
 static_assert(std::atomic<std::int64_t>::is_always_lock_free, "a handler needs a lock-free flag");
 
@@ -82,7 +84,15 @@ void clear_interrupt() noexcept {
 }
 
 bool interrupted() noexcept {
-  return first != 0;
+  return first != 0 || (stopped_here != nullptr && *stopped_here);
+}
+
+Interruptible::Interruptible(const std::atomic<bool>& stopped) noexcept : before_(stopped_here) {
+  stopped_here = &stopped;
+}
+
+Interruptible::~Interruptible() {
+  stopped_here = before_;
 }
 
 void throw_if_interrupted(const char* what) {

@@ -1,6 +1,8 @@
 // ^C sets a flag instead of ending the program, so that long work can end after a whole step.
 #pragma once
 
+#include <atomic>
+
 namespace psf::core {
 
 // After this call SIGINT, SIGTERM, SIGHUP and SIGXCPU set a flag. A second signal removes the
@@ -13,6 +15,20 @@ void watch_interrupts();
 // Sets the flag as a signal would, and takes it back, for programs with handlers of their own.
 void interrupt() noexcept;
 void clear_interrupt() noexcept;
+
+// As long as it is there, interrupted() on its thread is also true once `stopped` is: the work of
+// one thread ends and that of the others goes on. The innermost one counts.
+class Interruptible {
+ public:
+  explicit Interruptible(const std::atomic<bool>& stopped) noexcept;
+  ~Interruptible();
+  Interruptible(const Interruptible&) = delete;
+  Interruptible& operator=(const Interruptible&) = delete;
+
+ private:
+  const std::atomic<bool>* before_;
+};
+
 // Throws Error{interrupted} where the flag is set; `what`, the end of its message, says what is
 // left behind.
 void throw_if_interrupted(const char* what);

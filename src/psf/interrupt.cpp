@@ -4,6 +4,14 @@
 
 namespace psf {
 
+struct Interruptible::State : core::Interruptible {
+  using core::Interruptible::Interruptible;
+};
+
+Interruptible::Interruptible(const std::atomic<bool>& stopped)
+    : state_(std::make_unique<State>(stopped)) {}
+Interruptible::~Interruptible() = default;
+
 void interrupt() noexcept {
   core::interrupt();
 }

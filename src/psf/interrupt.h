@@ -1,11 +1,28 @@
 // Ends long calls from another thread.
 #pragma once
 
+#include <atomic>
+#include <memory>
+
 #include "psf/export.h"
 
 namespace psf {
 
-// Every call that is at work, and every later one, throws Error{interrupted} at its next block,
+// As long as it is there, calls of its thread throw Error{interrupted} at their next step once
+// `stopped` is true, which any thread may say. The calls of other threads go on.
+class PSF_API Interruptible {
+ public:
+  explicit Interruptible(const std::atomic<bool>& stopped);
+  ~Interruptible();
+  Interruptible(const Interruptible&) = delete;
+  Interruptible& operator=(const Interruptible&) = delete;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// Every call that is at work, and every later one, throws Error{interrupted} at its next step,
 // until clear_interrupt().
 PSF_API void interrupt() noexcept;
 PSF_API void clear_interrupt() noexcept;

@@ -155,39 +155,48 @@ Json to_json(const ConvergeReport& report) {
           {"analytic", analytic}};
 }
 
-std::string to_csv(const ConvergeReport& report) {
-  std::string text;
+Json to_rows(const ConvergeReport& report) {
+  Json rows = Json::array();
   const Json json = to_json(report);
-  const auto line = [&text](const Json& series, const Json& names, const Json& point, bool header) {
-    std::string cells = header ? "id" : csv_cell(series["id"]);
-    const auto add = [&](const std::string& name, const Json& value) {
-      cells += "," + (header ? name : csv_cell(value));
-    };
-    for (const auto& [name, value] : names.items()) {
-      add(name, series["parameters"].is_null() ? Json(nullptr) : series["parameters"][name]);
-    }
-    for (const auto& [name, value] : point.items()) {
-      if (value.is_object()) {
-        for (const auto& [part, number] : value.items()) {
-          add(name == "metrics" ? part : name + "_" + part, number);
-        }
-      } else if (name.ends_with("_ci")) {
-        add(name + "_low", value.is_null() ? value : value[0]);
-        add(name + "_high", value.is_null() ? value : value[1]);
-      } else {
-        add(name, value);
-      }
-    }
-    text += cells + "\n";
-  };
   const Json& all = json["series"];
   const Json names = all.size() > 1 ? all[1]["parameters"] : Json::object();
   for (const Json& series : all) {
     for (const Json& point : series["points"]) {
-      if (text.empty()) line(series, names, point, true);
-      line(series, names, point, false);
+      Json row = {{"id", series["id"]}};
+      for (const auto& [name, value] : names.items()) {
+        row[name] = series["parameters"].is_null() ? Json(nullptr) : series["parameters"][name];
+      }
+      for (const auto& [name, value] : point.items()) {
+        if (value.is_object()) {
+          for (const auto& [part, number] : value.items()) {
+            row[name == "metrics" ? part : name + "_" + part] = number;
+          }
+        } else if (name.ends_with("_ci")) {
+          row[name + "_low"] = value.is_null() ? value : value[0];
+          row[name + "_high"] = value.is_null() ? value : value[1];
+        } else {
+          row[name] = value;
+        }
+      }
+      rows.push_back(row);
     }
   }
+  return rows;
+}
+
+std::string to_csv(const ConvergeReport& report) {
+  std::string text;
+  const auto line = [&text](const Json& row, bool header) {
+    const char* separator = "";
+    for (const auto& [name, value] : row.items()) {
+      text += separator + (header ? name : csv_cell(value));
+      separator = ",";
+    }
+    text += "\n";
+  };
+  const Json rows = to_rows(report);
+  line(rows[0], true);
+  for (const Json& row : rows) line(row, false);
   return text;
 }
 

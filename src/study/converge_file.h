@@ -52,7 +52,9 @@ struct ConvergeReport {
 [[nodiscard]] std::string picture_name(std::size_t series, std::uint64_t n);
 
 [[nodiscard]] Json to_json(const ConvergeReport& report);
-// A table with one line for each series and n.
+// A flat object for each series and n: id, parameters, and the values of the point by name.
+[[nodiscard]] Json to_rows(const ConvergeReport& report);
+// The same as a table, one line each.
 [[nodiscard]] std::string to_csv(const ConvergeReport& report);
 
 }  // namespace psf::study

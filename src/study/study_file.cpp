@@ -64,6 +64,21 @@ Json to_json(const filter::Parameters& parameters) {
   return json;
 }
 
+Json describe_noise(std::span<const run::NoiseShare> noise,
+                    std::span<const formats::CameraInfo> cameras) {
+  Json list = Json::array();
+  for (std::size_t k = 0; k < noise.size(); ++k) {
+    list.push_back({{"camera", cameras[k].name},
+                    {"unfiltered_share", noise[k].share()},
+                    {"variance", noise[k].variance()},
+                    {"unfiltered", noise[k].unfiltered},
+                    {"contribution", noise[k].contribution},
+                    {"covariance", noise[k].covariance},
+                    {"pixels", noise[k].pixels}});
+  }
+  return list;
+}
+
 std::string csv_cell(const Json& value) {
   if (value.is_null()) return "";
   if (!value.is_string()) return core::json_text(value);

@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "filter/parameters/parameters.h"
+#include "formats/layout/metadata.h"
 #include "metrics/metrics.h"
 #include "run/dump.h"
+#include "run/noise_share.h"
 #include "run/passes.h"
 
 namespace psf::study {
@@ -34,6 +36,10 @@ inline constexpr int kStudyFormat = 1;  // raised where readers have to know of 
 [[nodiscard]] Json to_json(const metrics::Metrics& metrics, std::span<const metrics::Metric> asked);
 // Each parameter as text by the name of its option, as psf filter takes it.
 [[nodiscard]] Json to_json(const filter::Parameters& parameters);
+
+// The noise of the picture without filter, an entry a camera; the share is null where there is none.
+[[nodiscard]] Json describe_noise(std::span<const run::NoiseShare> noise,
+                                  std::span<const formats::CameraInfo> cameras);
 
 // A value as a cell of a CSV table: quoted where it must be, empty for null.
 [[nodiscard]] std::string csv_cell(const Json& value);

@@ -77,4 +77,7 @@ struct TuneRequest {
 // known to be good where this holds by kSure standard errors for every set.
 inline constexpr double kTolerance = 0.15, kSure = 2;
 
+// The radii that are tried unless others are asked for, as a list of texts.
+inline constexpr const char* kTuneRadii = "2px,2.8px,4px,5.7px,8px,11.3px,16px,22.6px,32px";
+
 }  // namespace psf::study

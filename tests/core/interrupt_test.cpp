@@ -6,10 +6,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
 #include <functional>
+#include <thread>
 
 #include "catch.h"
 #include "core/error.h"
@@ -122,4 +124,20 @@ TEST_CASE("a write that is refused ends nothing") {
     _exit(0);
   });
   CHECK(end.code == 0);
+}
+
+TEST_CASE("the work of one thread ends where it is told to, that of the others goes on") {
+  std::atomic<bool> stopped{false};
+  CHECK(!psf::core::interrupted());
+  {
+    const psf::core::Interruptible here(stopped);
+    CHECK(!psf::core::interrupted());
+    stopped = true;
+    CHECK(psf::core::interrupted());
+    CHECK_THROWS_AS(psf::core::throw_if_interrupted("nothing is lost"), psf::Error);
+    bool other = true;
+    std::thread([&other] { other = psf::core::interrupted(); }).join();
+    CHECK(!other);
+  }
+  CHECK(!psf::core::interrupted());
 }

@@ -55,7 +55,7 @@ bool is_close(double a, double b) {
   return std::abs(a - b) <= 1e-6 * (1 + std::abs(b));
 }
 
-// As the header of study/explain_ply.h has it.
+// As the header of explain/ply.h has it.
 struct Point {
   std::array<float, 3> position{}, normal{};
   std::array<unsigned char, 3> colour{};

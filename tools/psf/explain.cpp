@@ -2,19 +2,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "cli.h"
 #include "core/error.h"
-#include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "explain/ply.h"
-#include "explain_report.h"
+#include "explain/report.h"
 #include "filter_options.h"
 #include "notes.h"
 #include "option_values.h"
@@ -88,12 +86,11 @@ void run(const ExplainOptions& options) {
   const explain::ExplainResult explanation = explain::explain(dump, request);
   bar.finish();
   const explain::Attribution whence = explain::attribute(explanation);
-  const ExplainReport report{dump, explanation, whence,
-                             options.all ? std::numeric_limits<std::size_t>::max() : options.top,
-                             options.all};
-  fmt::print("{}{}", explain_overview(report), explain_tables(report));
+  const explain::Report report{dump, explanation, whence,
+                               options.all ? explain::kAllRows : options.top, options.all};
+  fmt::print("{}{}", explain::overview(report), explain::tables(report));
   if (!options.common.json.empty()) {
-    core::write_json_file(options.common.json, explain_json(report), -1);
+    core::write_text_file(options.common.json, explain::json(report) + "\n");
   }
   if (!options.ply.empty()) static_cast<void>(explain::write_ply(explanation, whence, options.ply));
 }

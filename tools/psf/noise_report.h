@@ -4,12 +4,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <span>
 #include <string>
 
-#include "formats/layout/metadata.h"
 #include "run/noise_share.h"
+#include "study/study_file.h"
 
 namespace psf::tools {
 
@@ -20,20 +18,7 @@ inline std::string share_text(const run::NoiseShare& noise) {
   return std::isnan(share) ? "no noise" : fmt::format("{:.1f}%", 100 * share);
 }
 
-// One entry per camera; the share is null where there is no noise.
-inline nlohmann::ordered_json noise_json(std::span<const run::NoiseShare> noise,
-                                         std::span<const formats::CameraInfo> cameras) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (std::size_t k = 0; k < noise.size(); ++k) {
-    list.push_back({{"camera", cameras[k].name},
-                    {"unfiltered_share", noise[k].share()},
-                    {"variance", noise[k].variance()},
-                    {"unfiltered", noise[k].unfiltered},
-                    {"contribution", noise[k].contribution},
-                    {"covariance", noise[k].covariance},
-                    {"pixels", noise[k].pixels}});
-  }
-  return list;
-}
+// An entry a camera.
+inline constexpr auto* noise_json = &study::describe_noise;
 
 }  // namespace psf::tools

@@ -1,30 +1,12 @@
-// Numbers as text for people.
+// Numbers as text for people; what all verbs share stands in core.
 #pragma once
 
-#include <cstdint>
-#include <string>
+#include "core/text.h"
 
 namespace psf::tools {
 
-// 1234567 becomes "1,234,567".
-inline std::string with_commas(std::uint64_t value) {
-  std::string text = std::to_string(value);
-  for (std::size_t left = text.size(); left > 3;) {
-    left -= 3;
-    text.insert(left, ",");
-  }
-  return text;
-}
-
-// A number with its noun: "1 pass", "2 passes".
-inline std::string counted(std::uint64_t count, const char* one, const char* many) {
-  return with_commas(count) + " " + (count == 1 ? one : many);
-}
-
-// A number of bytes as mebibytes, rounded up: "1,234 MiB".
-inline std::string in_mebibytes(std::uint64_t bytes) {
-  constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20;
-  return with_commas((bytes + kMebibyte - 1) / kMebibyte) + " MiB";
-}
+using core::counted;
+using core::in_mebibytes;
+using core::with_commas;
 
 }  // namespace psf::tools

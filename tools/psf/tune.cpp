@@ -20,7 +20,7 @@
 #include "notes.h"
 #include "parameter_lists.h"
 #include "pass_range.h"
-#include "study/study_file.h"
+#include "study/tune_file.h"
 #include "study_folder.h"
 #include "text.h"
 #include "verbs.h"
@@ -37,20 +37,8 @@ struct TuneOptions {
   std::optional<std::uint64_t> max_memory;
 };
 
-constexpr const char* kRadii = "2px,2.8px,4px,5.7px,8px,11.3px,16px,22.6px,32px";
 constexpr std::size_t kRowsShown = 8;  // rows of the table
 constexpr double kCorrelated = 0.05;   // correlation of the parts' noise that is worth a note
-
-using Rows = std::vector<const study::TuneRow*>;
-
-Rows by_error(const study::TuneResult& tuning) {
-  Rows rows;
-  for (const study::TuneRow& row : tuning.rows) rows.push_back(&row);
-  std::stable_sort(rows.begin(), rows.end(), [](const study::TuneRow* a, const study::TuneRow* b) {
-    return a->error < b->error;
-  });
-  return rows;
-}
 
 // As psf filter takes them, what is the default left out.
 std::string as_options(const filter::Parameters& parameters) {
@@ -64,14 +52,8 @@ std::string as_options(const filter::Parameters& parameters) {
   return text.substr(1);
 }
 
-std::size_t may_be_better(const study::TuneResult& tuning) {
-  return static_cast<std::size_t>(
-      std::count_if(tuning.rows.begin(), tuning.rows.end(),
-                    [](const study::TuneRow& row) { return row.may_be_better; }));
-}
-
 void print(const study::TuneResult& tuning, const run::Dump& dump) {
-  const Rows rows = by_error(tuning);
+  const std::vector<const study::TuneRow*> rows = study::by_error(tuning);
   fmt::print("{:>10} {:>9} {:>10} {:>10} {:>10} {:>10}  parameters\n", "error", "+-", "bias^2",
              "variance", "neighbours", "sigmas off");
   for (std::size_t k = 0; k < std::min(kRowsShown, rows.size()); ++k) {
@@ -83,7 +65,7 @@ void print(const study::TuneResult& tuning, const run::Dump& dump) {
   const study::TuneRow& best = tuning.rows[tuning.best];
   fmt::print("{:>10.4g}  unfiltered\nchosen: {}\n", tuning.unfiltered, as_options(best.parameters));
   constexpr double kPercent = 100;
-  const std::size_t doubtful = may_be_better(tuning);
+  const std::size_t doubtful = study::may_be_better(tuning);
   if (doubtful == 0) {
     fmt::print("sure: its error is at most {:.0f}% above any other's, by {} standard errors\n",
                kPercent * study::kTolerance, study::kSure);
@@ -111,22 +93,11 @@ void print(const study::TuneResult& tuning, const run::Dump& dump) {
   }
 }
 
-study::Json to_json(const study::TuneRow& row) {
-  return {{"parameters", study::to_json(row.parameters)},
-          {"error", row.error},
-          {"standard_error", row.standard_error},
-          {"bias_sq", row.bias_sq},
-          {"variance", row.variance},
-          {"neighbors", row.neighbors},
-          {"sigmas_above_least", row.distance},
-          {"may_be_better", row.may_be_better}};
-}
-
 void run(const TuneOptions& options) {
   keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
   ParameterLists lists = options.lists;
-  lists.given.try_emplace("r0", kRadii);
+  lists.given.try_emplace("r0", study::kTuneRadii);
   std::vector<filter::Parameters> sets = all_sets(lists);
   const run::Dump dump(options.input);
   std::vector<std::string> notes;
@@ -147,27 +118,7 @@ void run(const TuneOptions& options) {
   progress.finish();
   print(tuning, dump);
   if (options.common.json.empty()) return;
-  study::Json rows = study::Json::array();
-  for (const study::TuneRow* row : by_error(tuning)) rows.push_back(to_json(*row));
-  const formats::CameraInfo& camera = dump.metadata().cameras[tune.camera];
-  const study::Json json = {
-      {"kind", "tune"},
-      {"format", study::kStudyFormat},
-      {"version", kVersion},
-      {"input", study::describe_input(dump, tune.passes, tune.camera)},
-      {"epsilon", options.epsilon},
-      {"unfiltered", tuning.unfiltered},
-      {"u_variance", tuning.u_variance},
-      {"u_covariance", tuning.u_covariance},
-      {"noise", noise_json(std::span(&tuning.noise, 1), std::span(&camera, 1))},
-      {"constant", tuning.constant},
-      {"correlation", tuning.correlation},
-      {"independent_paths", tuning.has_independent_paths},
-      {"parts", tuning.parts},
-      {"sure", may_be_better(tuning) == 0},
-      {"best", to_json(tuning.rows[tuning.best])},
-      {"rows", rows}};
-  core::write_json_file(options.common.json, json, 1);
+  core::write_json_file(options.common.json, study::to_json(tuning, dump, tune, kVersion), 1);
   fmt::print("psf filter --tuned {} takes the choice\n", options.common.json);
 }
 

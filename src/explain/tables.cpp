@@ -1,4 +1,4 @@
-// The tables of psf explain's text: refusals, whence the light came, remedies, paths.
+// The tables of an explained pixel's text: refusals, whence the light came, remedies, paths.
 #include <fmt/format.h>
 
 #include <array>
@@ -6,22 +6,20 @@
 #include <iterator>
 #include <utility>
 
-#include "explain_words.h"
+#include "core/text.h"
+#include "explain/words.h"
 #include "filter/parameters/text.h"
 #include "filter/weights.h"
-#include "text.h"
 
-namespace psf::tools {
+namespace psf::explain {
 namespace {
-
-using explain::luminance;
 
 // A remedy is worth a row if it refuses so much more of the leak than of the others, in shares.
 constexpr double kWorthARow = 0.1, kTells = 0.25;
 
 class Tables {
  public:
-  explicit Tables(const ExplainReport& report)
+  explicit Tables(const Report& report)
       : report_(report), e_(report.explanation), w_(report.whence), v_(e_.vertices) {}
 
   std::string run() {
@@ -43,7 +41,7 @@ class Tables {
   }
   [[nodiscard]] std::size_t rows_of(std::size_t rows) const { return std::min(rows, report_.top); }
   void rest(std::size_t rows) {
-    if (rows > report_.top) say("  and {} more\n", with_commas(rows - report_.top));
+    if (rows > report_.top) say("  and {} more\n", core::with_commas(rows - report_.top));
   }
   // A value of a channel, or a dash where the file has none.
   static std::string cell(const auto& column, int decimals, double value, const char* unit = "") {
@@ -53,14 +51,14 @@ class Tables {
   void refusals() {
     if (w_.refusals.empty()) {
       return say("\nno weight is on: {} in the balls, all averaged\n",
-                 counted(w_.candidates, "pair", "pairs"));
+                 core::counted(w_.candidates, "pair", "pairs"));
     }
     say("\n{:<34}{:>12}{:>8}{:>12}{:>26}\n",
-        counted(w_.candidates, "pair", "pairs") + " in the balls", "refused", "", "it alone",
+        core::counted(w_.candidates, "pair", "pairs") + " in the balls", "refused", "", "it alone",
         "luminance without it");
-    for (const explain::TermRefusals& of : w_.refusals) {
-      say("  {:<32}{:>12}{:>8}{:>12}{:>26.4g}\n", term_text(of.term), with_commas(of.refused),
-          percent(of.refused, w_.candidates), with_commas(of.alone), luminance(of.without));
+    for (const TermRefusals& of : w_.refusals) {
+      say("  {:<32}{:>12}{:>8}{:>12}{:>26.4g}\n", term_text(of.term), core::with_commas(of.refused),
+          percent(of.refused, w_.candidates), core::with_commas(of.alone), luminance(of.without));
     }
   }
   // As the run has it: "normal 0.95", "visibility".
@@ -74,18 +72,18 @@ class Tables {
   void kinds() {
     if (w_.leak == 0) return;
     const bool lower = luminance(w_.pixel.difference) < 0;
-    say("\n{} {}\n", counted(w_.sources.size(), "source is", "sources are"),
-        fmt::format("averaged; {} {} all of the difference", with_commas(w_.leak),
+    say("\n{} {}\n", core::counted(w_.sources.size(), "source is", "sources are"),
+        fmt::format("averaged; {} {} all of the difference", core::with_commas(w_.leak),
                     w_.leak == 1 ? (lower ? "lowers the pixel by" : "raises the pixel by")
                                  : (lower ? "lower the pixel by" : "raise the pixel by")));
     if (w_.kinds.empty()) return;
     say("  {:<44}{:>10}{:>12}{:>12}{:>14}\n", "told from the vertex by", "pairs", "of those",
         "of others", "adds");
     for (std::size_t k = 0; k < rows_of(w_.kinds.size()); ++k) {
-      const explain::KindShare& kind = w_.kinds[k];
-      say("  {:<44}{:>10}{:>12}{:>12}{:>+14.4g}\n", kind_text(kind.terms), with_commas(kind.pairs),
-          percent(kind.leaking, w_.leak_pairs), percent(kind.pairs - kind.leaking, w_.other_pairs),
-          luminance(kind.excess));
+      const KindShare& kind = w_.kinds[k];
+      say("  {:<44}{:>10}{:>12}{:>12}{:>+14.4g}\n", kind_text(kind.terms),
+          core::with_commas(kind.pairs), percent(kind.leaking, w_.leak_pairs),
+          percent(kind.pairs - kind.leaking, w_.other_pairs), luminance(kind.excess));
     }
     rest(w_.kinds.size());
   }
@@ -101,7 +99,7 @@ class Tables {
   void remedies() {
     if (w_.leak == 0 || w_.leak_pairs == 0) return;
     bool told = false;
-    for (const explain::Remedy& remedy : w_.remedies) {
+    for (const Remedy& remedy : w_.remedies) {
       const double gain = remedy.gain(w_.leak_pairs, w_.other_pairs);
       if (gain < kWorthARow) continue;
       if (!std::exchange(told, true)) {
@@ -109,7 +107,7 @@ class Tables {
             "luminance with it");
       }
       const auto cost = [](std::uint64_t part, std::uint64_t all) {
-        return with_commas(part) + fmt::format("{:>8}", percent(part, all));
+        return core::with_commas(part) + fmt::format("{:>8}", percent(part, all));
       };
       say("  {:<32}{:>20}{:>20}{:>20.4g}\n",
           filter::kTermNames[remedy.term] +
@@ -127,7 +125,7 @@ class Tables {
         "of those", "adds", "angle", "albedo", "lights", "material", "plane");
     const auto [x, y] = pixel_of(e_, e_.paths.front().vertex);
     for (std::size_t k = 0; k < rows_of(w_.pixels.size()); ++k) {
-      const explain::PixelShare& of = w_.pixels[k];
+      const PixelShare& of = w_.pixels[k];
       const std::uint32_t width = e_.widths[of.camera];
       const std::uint32_t from_x = of.pixel % width, from_y = of.pixel / width;
       std::string name = fmt::format("{},{}", from_x, from_y);
@@ -136,7 +134,7 @@ class Tables {
       else if (from_x == x && from_y == y)
         name += " itself";
       say("  {:<22}{:>9}{:>11}{:>+11.3g}{:>9}{:>9}{:>9}{:>10}{:>8}\n", name,
-          with_commas(of.sources), percent(of.leaking, of.pairs), luminance(of.excess),
+          core::with_commas(of.sources), percent(of.leaking, of.pairs), luminance(of.excess),
           cell(v_.normal, 1, of.angle), cell(v_.reflectance, 3, of.reflectance),
           cell(v_.visibility, 0, 100 * of.lights, "%"),
           cell(v_.material, 0, 100 * of.material, "%"), cell(v_.normal, 2, of.plane));
@@ -148,9 +146,9 @@ class Tables {
     say("\n{:<12}{:>6}{:>10}{:>11}{:>8}{:>10}{:>8}{:>8}{:>9}{:>10}{:>8}\n", "source", "pass",
         "pixel", "adds", "share", "distance", "angle", "albedo", "lights", "material", "plane");
     for (std::size_t k = 0; k < rows_of(w_.sources.size()); ++k) {
-      const explain::SourceShare& source = w_.sources[k];
-      const explain::ExplainedPair& pair = e_.pairs[source.pair];
-      const explain::PairFeatures f = explain::features_of(e_, pair);
+      const SourceShare& source = w_.sources[k];
+      const ExplainedPair& pair = e_.pairs[source.pair];
+      const PairFeatures f = features_of(e_, pair);
       const auto [x, y] = pixel_of(e_, source.vertex);
       say("  {:<10}{:>6}{:>10}{:>+11.3g}{:>8}{:>10.3g}{:>8}{:>8}{:>9}{:>10}{:>8}\n",
           e_.record[source.vertex], e_.pass[source.vertex], fmt::format("{},{}", x, y),
@@ -162,8 +160,7 @@ class Tables {
     rest(w_.sources.size());
   }
   // What the source sees and the vertex does not, or the other way round.
-  [[nodiscard]] std::string lights(const explain::ExplainedPair& pair,
-                                   const explain::PairFeatures& features) const {
+  [[nodiscard]] std::string lights(const ExplainedPair& pair, const PairFeatures& features) const {
     if (!features.lights) return "-";
     if (*features.lights == 0) return "same";
     const std::uint32_t more = *features.lights & v_.visibility[pair.vertex];
@@ -175,8 +172,8 @@ class Tables {
   }
 
   // What the source is of, where that is another than the vertex is of.
-  [[nodiscard]] std::string material(const explain::ExplainedPair& pair,
-                                     const explain::PairFeatures& features) const {
+  [[nodiscard]] std::string material(const ExplainedPair& pair,
+                                     const PairFeatures& features) const {
     if (!features.material) return "-";
     if (!*features.material) return "same";
     const std::string name = material_name(report_.dump, v_.material[pair.vertex]);
@@ -189,7 +186,7 @@ class Tables {
         "neighbors", "in ball", "alpha", "c", "c_bar", "u");
     const auto light = [](const Rgb& c) { return fmt::format("{:.4g}", psf::luminance(c)); };
     for (std::size_t p = 0; p < rows_of(e_.paths.size()); ++p) {
-      const explain::ExplainedPath& path = e_.paths[p];
+      const ExplainedPath& path = e_.paths[p];
       const std::uint32_t i = path.vertex;
       const std::string u = v_.unfiltered.empty() ? "0" : light(v_.unfiltered[i]);
       const char* fate = kFateNames[static_cast<std::size_t>(path.fate)];
@@ -197,16 +194,16 @@ class Tables {
         say("  {:<10}{:>6}{:>23}{:>54}\n", e_.record[i], e_.pass[i], fate, u);
         continue;
       }
-      const bool averaged = path.fate == explain::PathFate::averaged;
+      const bool averaged = path.fate == PathFate::averaged;
       say("  {:<10}{:>6}{:>12.4g}{:>11}{:>10}{:>11}{:>11}{:>11}{:>11}\n", e_.record[i], e_.pass[i],
-          path.radius, averaged ? with_commas(path.neighbors) : fate, with_commas(path.in_ball),
-          light(v_.throughput[i]), e_.is_source[i] ? light(v_.contribution[i]) : "none",
-          light(path.c_bar), u);
+          path.radius, averaged ? core::with_commas(path.neighbors) : fate,
+          core::with_commas(path.in_ball), light(v_.throughput[i]),
+          e_.is_source[i] ? light(v_.contribution[i]) : "none", light(path.c_bar), u);
       if (report_.vertices) vertex(i, path);
     }
     rest(e_.paths.size());
   }
-  void vertex(std::uint32_t i, const explain::ExplainedPath& path) {
+  void vertex(std::uint32_t i, const ExplainedPath& path) {
     say("    x {}", point(v_.position[i]));
     if (!v_.normal.empty()) say(" n {}", point(v_.normal[i]));
     if (!v_.reflectance.empty()) say(" rho {}", point(v_.reflectance[i]));
@@ -216,17 +213,17 @@ class Tables {
     say("\n");
   }
 
-  const ExplainReport& report_;
-  const explain::ExplainResult& e_;
-  const explain::Attribution& w_;
+  const Report& report_;
+  const ExplainResult& e_;
+  const Attribution& w_;
   const run::BlockRecords& v_;
   std::string text_;
 };
 
 }  // namespace
 
-std::string explain_tables(const ExplainReport& report) {
+std::string tables(const Report& report) {
   return Tables(report).run();
 }
 
-}  // namespace psf::tools
+}  // namespace psf::explain

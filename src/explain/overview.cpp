@@ -1,4 +1,4 @@
-// The head of psf explain's text: the pixel, its vertices, and what it is against its own paths.
+// The head of an explained pixel's text: the pixel, its vertices, and what it is against its own paths.
 #include <fmt/format.h>
 
 #include <array>
@@ -9,16 +9,13 @@
 #include <set>
 #include <vector>
 
-#include "explain_words.h"
+#include "core/text.h"
+#include "explain/words.h"
 #include "filter/parameters/text.h"
 #include "search/ball.h"
-#include "text.h"
 
-namespace psf::tools {
+namespace psf::explain {
 namespace {
-
-using explain::Colour;
-using explain::luminance;
 
 // A firefly is worth a word from here on, and a standard error says something.
 constexpr double kDominates = 0.2, kDominatesOwn = 0.5;
@@ -41,7 +38,7 @@ std::string colour(const Colour& c) {
 
 class Overview {
  public:
-  explicit Overview(const ExplainReport& report)
+  explicit Overview(const Report& report)
       : report_(report), e_(report.explanation), v_(e_.vertices) {}
 
   std::string run() {
@@ -53,7 +50,7 @@ class Overview {
                         e_.request.path ? fmt::format("path {}, ", *e_.request.path) : "", x, y,
                         camera.empty() ? "" : fmt::format(" of camera \"{}\"", shown(camera)));
     paths();
-    for (const explain::ExplainedPath& path : e_.paths) {
+    for (const ExplainedPath& path : e_.paths) {
       if (has_vertex(path)) own_.push_back(&path);
     }
     if (own_.empty()) {
@@ -78,18 +75,18 @@ class Overview {
     std::string list;
     for (std::size_t k = 0; k < fates.size(); ++k) {
       if (fates[k] == 0) continue;
-      list +=
-          fmt::format("{}{} {}", list.empty() ? "" : ", ", with_commas(fates[k]), kFateNames[k]);
+      list += fmt::format("{}{} {}", list.empty() ? "" : ", ", core::with_commas(fates[k]),
+                          kFateNames[k]);
     }
-    line("paths", fmt::format("{}, from {} of the {}: {}", with_commas(e_.paths.size()),
-                              counted(e_.blocks, "block", "blocks"),
-                              counted(e_.passes, "pass", "passes"), list));
+    line("paths", fmt::format("{}, from {} of the {}: {}", core::with_commas(e_.paths.size()),
+                              core::counted(e_.blocks, "block", "blocks"),
+                              core::counted(e_.passes, "pass", "passes"), list));
   }
 
   void vertices() {
     Vec3 low = v_.position[own_[0]->vertex], high = low;
     Range distance;
-    for (const explain::ExplainedPath* path : own_) {
+    for (const ExplainedPath* path : own_) {
       const Vec3& x = v_.position[path->vertex];
       for (int axis = 0; axis < 3; ++axis) {
         low[axis] = std::min(low[axis], x[axis]);
@@ -108,7 +105,7 @@ class Overview {
     const std::uint32_t first = own_[0]->vertex;
     double cosine = 1, reflectance = 0;
     std::set<std::uint32_t> materials, lights;
-    for (const explain::ExplainedPath* path : own_) {
+    for (const ExplainedPath* path : own_) {
       const std::uint32_t i = path->vertex;
       if (!v_.normal.empty()) {
         cosine = std::min(cosine, double{dot(v_.normal[first], v_.normal[i])});
@@ -154,7 +151,7 @@ class Overview {
   void balls() {
     Range radius;
     double neighbors = 0, in_ball = 0;
-    for (const explain::ExplainedPath* path : own_) {
+    for (const ExplainedPath* path : own_) {
       radius.add(path->radius);
       neighbors += path->neighbors;
       in_ball += path->in_ball;
@@ -169,7 +166,7 @@ class Overview {
   }
 
   void values() {
-    const explain::PixelSums& pixel = report_.whence.pixel;
+    const PixelSums& pixel = report_.whence.pixel;
     if (pixel.paths == 0) return line("filtered", "no path is part of it");
     line("filtered", colour(pixel.filtered));
     const auto& sources = report_.whence.sources;
@@ -194,7 +191,7 @@ class Overview {
     }
     line("difference", text);
     const double filtered = luminance(pixel.filtered);
-    for (const explain::SourceShare& source : sources) {
+    for (const SourceShare& source : sources) {
       if (filtered > 0 && sources.size() > 1 && luminance(source.share) > kDominates * filtered) {
         line("", fmt::format("source {} alone is {} of the filtered pixel",
                              e_.record[source.vertex], percent(luminance(source.share), filtered)));
@@ -202,17 +199,17 @@ class Overview {
     }
   }
 
-  const ExplainReport& report_;
-  const explain::ExplainResult& e_;
+  const Report& report_;
+  const ExplainResult& e_;
   const run::BlockRecords& v_;
-  std::vector<const explain::ExplainedPath*> own_;  // with a vertex
+  std::vector<const ExplainedPath*> own_;  // with a vertex
   std::string text_;
 };
 
 }  // namespace
 
-std::string explain_overview(const ExplainReport& report) {
+std::string overview(const Report& report) {
   return Overview(report).run();
 }
 
-}  // namespace psf::tools
+}  // namespace psf::explain

@@ -1,11 +1,14 @@
 // An explained pixel as JSON.
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
 
-#include "explain_words.h"
+#include "core/json_text.h"
+#include "explain/words.h"
 #include "filter/parameters/text.h"
 #include "filter/weights.h"
 
-namespace psf::tools {
+namespace psf::explain {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -23,13 +26,13 @@ Json number(const std::optional<double>& value) {
   return value ? number(*value) : Json(nullptr);
 }
 
-class Writer {
+class JsonWriter {
  public:
-  explicit Writer(const ExplainReport& report) : report_(report), e_(report.explanation) {}
+  explicit JsonWriter(const Report& report) : report_(report), e_(report.explanation) {}
 
   [[nodiscard]] Json all() const {
-    const explain::ExplainRequest& request = e_.request;
-    const explain::Attribution& w = report_.whence;
+    const ExplainRequest& request = e_.request;
+    const Attribution& w = report_.whence;
     Json json = {{"input", report_.dump.reader().path()}, {"uuid", report_.dump.reader().uuid()}};
     for (const auto& [name, value] : filter::describe(request.parameters)) {
       json["parameters"][name] = value;
@@ -45,7 +48,7 @@ class Writer {
     json["value"] = value(w.pixel);
     json["candidates"] = w.candidates;
     json["refusals"] = Json::array();
-    for (const explain::TermRefusals& of : w.refusals) {
+    for (const TermRefusals& of : w.refusals) {
       json["refusals"].push_back({{"term", filter::kTermNames[of.term]},
                                   {"refused", of.refused},
                                   {"alone", of.alone},
@@ -62,7 +65,7 @@ class Writer {
   }
 
  private:
-  [[nodiscard]] Json value(const explain::PixelSums& pixel) const {
+  [[nodiscard]] Json value(const PixelSums& pixel) const {
     const bool own = pixel.own.has_value();
     return {
         {"paths", pixel.paths},
@@ -78,7 +81,7 @@ class Writer {
 
   [[nodiscard]] Json remedies() const {
     Json list = Json::array();
-    for (const explain::Remedy& remedy : report_.whence.remedies) {
+    for (const Remedy& remedy : report_.whence.remedies) {
       list.push_back({{"term", filter::kTermNames[remedy.term]},
                       {"threshold", remedy.threshold ? Json(*remedy.threshold) : Json(nullptr)},
                       {"refuses_of_leak", remedy.leaking},
@@ -90,7 +93,7 @@ class Writer {
 
   [[nodiscard]] Json kinds() const {
     Json list = Json::array();
-    for (const explain::KindShare& kind : report_.whence.kinds) {
+    for (const KindShare& kind : report_.whence.kinds) {
       list.push_back({{"apart_by", names(kind.terms)},
                       {"pairs", kind.pairs},
                       {"of_leak", kind.leaking},
@@ -101,7 +104,7 @@ class Writer {
 
   [[nodiscard]] Json pixels() const {
     Json list = Json::array();
-    for (const explain::PixelShare& pixel : report_.whence.pixels) {
+    for (const PixelShare& pixel : report_.whence.pixels) {
       const std::uint32_t width = e_.widths[pixel.camera];
       list.push_back({{"camera", pixel.camera},
                       {"pixel", {pixel.pixel % width, pixel.pixel / width}},
@@ -122,7 +125,7 @@ class Writer {
   [[nodiscard]] Json sources() const {
     Json list = Json::array();
     for (std::size_t k = 0; k < report_.whence.sources.size(); ++k) {
-      const explain::SourceShare& source = report_.whence.sources[k];
+      const SourceShare& source = report_.whence.sources[k];
       Json row = vertex(source.vertex);
       row["leak"] = k < report_.whence.leak;
       row["paths"] = source.paths;
@@ -135,7 +138,7 @@ class Writer {
   }
 
   [[nodiscard]] Json apart(std::size_t pair) const {
-    const explain::PairFeatures f = explain::features_of(e_, e_.pairs[pair]);
+    const PairFeatures f = features_of(e_, e_.pairs[pair]);
     return {{"angle", number(f.angle)},
             {"reflectance", number(f.reflectance)},
             {"lights", f.lights ? Json(*f.lights) : Json(nullptr)},
@@ -188,7 +191,7 @@ class Writer {
   }
 
   [[nodiscard]] Json path(std::size_t p) const {
-    const explain::ExplainedPath& of = e_.paths[p];
+    const ExplainedPath& of = e_.paths[p];
     Json row = vertex(of.vertex);
     row["fate"] = kFateNames[static_cast<std::size_t>(of.fate)];
     row["radius"] = number(double{of.radius});
@@ -201,15 +204,14 @@ class Writer {
       n[column] = Json::array();
     }
     for (std::size_t k = of.begin; k < of.end; ++k) {
-      const explain::ExplainedPair& pair = e_.pairs[k];
+      const ExplainedPair& pair = e_.pairs[k];
       n["record"].push_back(record(pair.vertex));
       n["pass"].push_back(e_.pass[pair.vertex]);
       n["pixel"].push_back(pixel(pair.vertex));
       n["distance"].push_back(pair.distance);
       n["contribution"].push_back(triple(e_.vertices.contribution[pair.vertex]));
-      n["share"].push_back(pair.averaged
-                               ? triple(explain::share_of(e_, pair, report_.whence.pixel.paths))
-                               : triple(explain::Colour(0, 0, 0)));
+      n["share"].push_back(pair.averaged ? triple(share_of(e_, pair, report_.whence.pixel.paths))
+                                         : triple(Colour(0, 0, 0)));
       n["averaged"].push_back(pair.averaged);
       n["in_ball"].push_back(pair.in_ball);
       n["refused_by"].push_back(pair.refusers);
@@ -217,14 +219,14 @@ class Writer {
     return row;
   }
 
-  const ExplainReport& report_;
-  const explain::ExplainResult& e_;
+  const Report& report_;
+  const ExplainResult& e_;
 };
 
 }  // namespace
 
-nlohmann::ordered_json explain_json(const ExplainReport& report) {
-  return Writer(report).all();
+std::string json(const Report& report) {
+  return core::json_text(JsonWriter(report).all());
 }
 
-}  // namespace psf::tools
+}  // namespace psf::explain

@@ -1,4 +1,4 @@
-// Words and numbers that both halves of psf explain's text use.
+// Words and numbers that both halves of the text and the JSON use.
 #pragma once
 
 #include <fmt/format.h>
@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
-#include "explain_report.h"
+#include "explain/report.h"
 
-namespace psf::tools {
+namespace psf::explain {
 
 inline constexpr const char* kFateNames[] = {"averaged", "orphan", "without vertex", "left out",
                                              "overflowed"};
@@ -26,11 +26,11 @@ inline std::string percent(std::uint64_t part, std::uint64_t all) {
   return percent(static_cast<double>(part), static_cast<double>(all));
 }
 
-inline bool has_vertex(const explain::ExplainedPath& path) {
-  return path.fate != explain::PathFate::no_vertex && path.fate != explain::PathFate::left_out;
+inline bool has_vertex(const ExplainedPath& path) {
+  return path.fate != PathFate::no_vertex && path.fate != PathFate::left_out;
 }
 
-inline std::pair<std::uint32_t, std::uint32_t> pixel_of(const explain::ExplainResult& explanation,
+inline std::pair<std::uint32_t, std::uint32_t> pixel_of(const ExplainResult& explanation,
                                                         std::uint32_t vertex) {
   const run::BlockRecords& v = explanation.vertices;
   const std::uint32_t width = explanation.widths[v.camera.empty() ? 0 : v.camera[vertex]];
@@ -69,4 +69,4 @@ inline std::string lights_text(const run::Dump& dump, std::uint32_t bits) {
   return shown(text);
 }
 
-}  // namespace psf::tools
+}  // namespace psf::explain
