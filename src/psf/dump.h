@@ -12,10 +12,13 @@
 #include <vector>
 
 #include "psf/error.h"
+#include "psf/explain.h"
 #include "psf/export.h"
 #include "psf/filter.h"
 #include "psf/parameters.h"
+#include "psf/passes.h"
 #include "psf/picture.h"
+#include "psf/study.h"
 
 namespace psf {
 
@@ -24,12 +27,6 @@ struct Channel {
   std::string type;  // "u8", "u16", "u32", "u64", "f16", "f32", "f64"
   std::size_t components = 1;
   bool octahedral = false;  // unit vectors in two components, read as three floats
-};
-
-// Which passes, from 0: [first, last); `last` not set: all there are.
-struct Passes {
-  std::uint64_t first = 0;
-  std::optional<std::uint64_t> last = {};
 };
 
 struct FilterOptions {
@@ -45,13 +42,6 @@ struct FilterResult {
   std::uint64_t passes = 0, blocks = 0;
   std::uint64_t sources = 0, queries = 0, orphans = 0, left_out = 0;  // records of all blocks
   double neighbors = 0;                                               // mean over the queries
-};
-
-struct SweepRow {
-  std::vector<std::pair<std::string, std::string>> parameters;  // name and text of each
-  std::vector<std::pair<std::string, double>> errors;           // by metric
-  double neighbors = 0;                                         // mean over the queries
-  double seconds = 0;                                           // of the traversal it shared
 };
 
 class PSF_API Dump {
@@ -92,10 +82,23 @@ class PSF_API Dump {
                                             std::span<const std::string> metrics = {},
                                             const FilterOptions& options = {},
                                             std::size_t camera = 0) const;
+  // What psf tune does: the error of every set without a reference, from independent parts of the
+  // passes. Throws as filter() does, and Error{usage} for sets of one block.
+  [[nodiscard]] TuneResult tune(std::span<const Parameters> sets,
+                                const TuneOptions& options = {}) const;
+  // What psf explain does: a pixel, 0,0 at the top left, or one path, by its number in the dump,
+  // as filter() makes it. Throws as filter() does, and Error{usage} for a pixel or path that the
+  // dump does not have, Error{bad_input} where no path falls into the pixel.
+  [[nodiscard]] Explanation explain(std::uint32_t x, std::uint32_t y,
+                                    const Parameters& parameters = {},
+                                    const ExplainOptions& options = {}) const;
+  [[nodiscard]] Explanation explain_path(std::uint64_t path, const Parameters& parameters = {},
+                                         const ExplainOptions& options = {}) const;
 
  private:
+  friend class Explanation;
   struct State;
-  std::unique_ptr<State> state_;
+  std::shared_ptr<State> state_;
 };
 
 struct WriterOptions {

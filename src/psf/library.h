@@ -9,9 +9,13 @@
 #include "film/image.h"
 #include "filter/parameters/text.h"
 #include "psf/parameters.h"
+#include "psf/passes.h"
 #include "psf/picture.h"
+#include "run/passes.h"
 
 namespace psf {
+
+[[nodiscard]] run::PassSelection to_run(const Passes& passes);
 
 // Throws Error{usage} where the values do not go together.
 [[nodiscard]] filter::Parameters to_filter(const Parameters& parameters);

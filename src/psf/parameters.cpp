@@ -2,6 +2,7 @@
 
 #include "filter/parameters/text.h"
 #include "psf/library.h"
+#include "study/parameter_lists.h"
 
 namespace psf {
 
@@ -28,6 +29,23 @@ std::vector<ParameterHelp> Parameters::help() {
         {parameter.name, parameter.type, parameter.help, parameter.text(filter::Parameters())});
   }
   return all;
+}
+
+std::vector<Parameters> Parameters::combinations(const std::map<std::string, std::string>& lists,
+                                                 bool no_weights) {
+  std::vector<Parameters> sets;
+  for (const filter::ParameterTexts& texts : study::combinations({lists, no_weights})) {
+    sets.emplace_back().no_weights(no_weights);
+    for (const auto& [name, text] : texts.given) sets.back().set(name, text);
+  }
+  return sets;
+}
+
+run::PassSelection to_run(const Passes& passes) {
+  run::PassSelection selection;
+  selection.first = static_cast<std::size_t>(passes.first);
+  if (passes.last) selection.last = static_cast<std::size_t>(*passes.last);
+  return selection;
 }
 
 filter::Parameters to_filter(const Parameters& parameters) {

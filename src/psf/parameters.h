@@ -29,6 +29,12 @@ class PSF_API Parameters {
   [[nodiscard]] const std::map<std::string, std::string>& given() const { return given_; }
   [[nodiscard]] bool has_no_weights() const { return no_weights_; }
 
+  // Every combination of lists of values, by the names of parameters, as of psf sweep: "2px,4px",
+  // "2px:32px:x2", "0.1:0.5:0.1", "0.9,off". In the order of help(); r0 and delta vary fastest.
+  // Throws Error{usage} as set(), and for more than 100,000 of them.
+  [[nodiscard]] static std::vector<Parameters> combinations(
+      const std::map<std::string, std::string>& lists, bool no_weights = false);
+
   // Every parameter that there is.
   [[nodiscard]] static std::vector<ParameterHelp> help();
 

@@ -84,7 +84,9 @@ Picture Picture::read(const std::string& path, const std::string& layer) {
   std::vector<float> values;
   for (const Rgb& color : read.colors) values.insert(values.end(), {color.x, color.y, color.z});
   image.add("", "RGB", values);
-  return to_picture(std::move(image), "");
+  Picture picture = to_picture(std::move(image), "");
+  picture.file = path;
+  return picture;
 }
 
 double Picture::error(const Picture& reference, std::string_view metric) const {

@@ -19,6 +19,7 @@ struct Layer {
 struct PSF_API Picture {
   std::size_t width = 0, height = 0;  // pixels
   std::string camera;
+  std::string file;  // that it was read from; empty where it was made
   std::vector<Layer> layers;
   std::vector<std::pair<std::string, std::string>> attributes;  // of its EXR
 

@@ -3,8 +3,11 @@
 
 #include "psf/dump.h"
 #include "psf/error.h"
+#include "psf/explain.h"
 #include "psf/filter.h"
 #include "psf/interrupt.h"
 #include "psf/parameters.h"
+#include "psf/passes.h"
 #include "psf/picture.h"
+#include "psf/study.h"
 #include "psf/version.h"

@@ -31,7 +31,7 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
     {"export", {"core", "film", "formats", "run"}},
     {"explain", {"core", "export", "filter", "formats", "run", "search"}},
     {"study", {"core", "filter", "film", "formats", "metrics", "run"}},
-    {"psf", {"core", "film", "filter", "formats", "metrics", "run", "study"}},
+    {"psf", {"core", "explain", "film", "filter", "formats", "metrics", "run", "study"}},
     {"python", {"psf"}},
     {"report", {"core", "film", "metrics", "run", "study"}},
     {"render", {"core", "film", "formats"}},

@@ -10,8 +10,10 @@
 The parameters are those of ``psf filter``, by the same names with underscores: numbers, text
 ("8px", "1/4"), True and False, and None for a weight that is off. ``psf.parameters()`` lists them.
 Mistakes and files that cannot be read raise ``psf.Error``, whose message is one line and whose
-``code`` is the exit code of the command. Long calls release the interpreter lock, end on ^C, and
-take ``progress``, a function of what is done and of all there is.
+``code`` is the exit code of the command. Long calls release the interpreter lock and end on ^C, and
+the calls of other threads go on. They show a bar in a notebook; ``progress=True`` is a bar
+everywhere, False none, a function gets what is done and all there is, and a class such as tqdm is a
+bar of that kind.
 """
 
 from psf import _psf
@@ -20,10 +22,12 @@ from psf._parameters import Parameter, geomspace, metrics, parameters
 from psf._picture import Picture, read_picture
 from psf._psf import Camera, Channel, Error
 from psf._records import FilteredRecords, filter_records
+from psf._studies import Convergence, Explanation, Figures, Tuning, converge
 from psf._writer import DumpWriter, create
 
 __version__: str = _psf.version
 __all__ = [
-    "Camera", "Channel", "Dump", "DumpWriter", "Error", "FilteredRecords", "Parameter", "Picture",
-    "create", "filter_records", "geomspace", "metrics", "open", "parameters", "read_picture",
+    "Camera", "Channel", "Convergence", "Dump", "DumpWriter", "Error", "Explanation", "Figures",
+    "FilteredRecords", "Parameter", "Picture", "Tuning", "converge", "create", "filter_records",
+    "geomspace", "metrics", "open", "parameters", "read_picture",
 ]

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
 import json
-import warnings
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -12,8 +10,10 @@ import numpy.typing as npt
 
 from psf import _psf
 from psf._picture import Picture, read_picture
+from psf._progress import Progress, shown
 from psf._psf import Camera, Channel
-from psf._values import Passes, Progress, Value, as_list, pass_range, texts
+from psf._studies import Explanation, Tuning, camera_number, warn
+from psf._values import Passes, Value, lists, pass_range, texts, with_underscores
 
 
 class _Column:
@@ -92,45 +92,76 @@ class Dump:
         raise KeyError(f"{self.path}: has no channel {channel}; it has {names}")
 
     def filter_all(self, *, passes: Passes = None, max_memory: int | None = None,
-                   no_weights: bool = False, progress: Progress | None = None,
+                   no_weights: bool = False, progress: Progress = None,
                    **parameters: Value) -> list[Picture]:
         """What ``psf filter`` does: a picture of every camera."""
-        first, last = pass_range(passes, self.passes)
-        result = self._dump.filter(texts(parameters), no_weights, first, last, max_memory, progress)
-        for note in result.notes:
-            warnings.warn(note.replace("`", ""), stacklevel=3)
+        with shown(progress, "filter") as report:
+            result = self._dump.filter(texts(parameters), no_weights,
+                                       pass_range(passes, self.passes), max_memory, report)
+        warn(result.notes)
         return [Picture(picture) for picture in result.take_pictures()]
 
     def filter(self, camera: str | None = None, *, passes: Passes = None,
                max_memory: int | None = None, no_weights: bool = False,
-               progress: Progress | None = None, **parameters: Value) -> Picture:
+               progress: Progress = None, **parameters: Value) -> Picture:
         """What ``psf filter`` does: the picture of a camera, the first unless named."""
-        if camera is not None and camera not in [one.name for one in self.cameras]:
-            raise KeyError(f"{self.path}: has no camera {camera}")
+        number = camera_number(self, camera)
         pictures = self.filter_all(passes=passes, max_memory=max_memory, no_weights=no_weights,
                                    progress=progress, **parameters)
-        return next(one for one in pictures if camera in (None, one.camera))
+        return pictures[number]
 
     def sweep(self, reference: Picture | str, *, metrics: str | Sequence[str] = "relMSE",
               camera: str | None = None, passes: Passes = None, max_memory: int | None = None,
-              no_weights: bool = False, progress: Progress | None = None,
-              **lists: Value | Iterable[Value]) -> list[dict[str, Any]]:
+              no_weights: bool = False, progress: Progress = None,
+              **parameters: Value | Iterable[Value]) -> list[dict[str, Any]]:
         """What ``psf sweep`` does: a row for each combination of the parameters' values.
 
         A row has the text of every parameter and the value of every metric, ``neighbors`` and
         ``seconds``; pandas.DataFrame(rows) takes it. Sets that differ in r0 and delta alone share
-        the work.
+        the work. A list may be text, as of the command: r0="2px:32px:x2".
         """
         if isinstance(reference, str):
             reference = read_picture(reference)
-        values = [as_list(value) for value in lists.values()]
-        sets = [texts(dict(zip(lists, combination))) for combination in itertools.product(*values)]
-        first, last = pass_range(passes, self.passes)
         names = [metrics] if isinstance(metrics, str) else list(metrics)
-        number = [one.name for one in self.cameras].index(camera) if camera is not None else 0
-        rows = self._dump.sweep(reference._picture, sets, no_weights, names, first, last, max_memory,
-                                number, progress)
-        return [{name.replace("-", "_"): value for name, value in row.items()} for row in rows]
+        with shown(progress, "sweep") as report:
+            rows = self._dump.sweep(reference._picture, lists(parameters), no_weights, names,
+                                    pass_range(passes, self.passes), max_memory,
+                                    camera_number(self, camera), report)
+        return [with_underscores(row) for row in rows]
+
+    def tune(self, *, camera: str | None = None, passes: Passes = None, epsilon: float = 0.01,
+             max_memory: int | None = None, no_weights: bool = False, progress: Progress = None,
+             **parameters: Value | Iterable[Value]) -> Tuning:
+        """What ``psf tune`` does: the error of every combination of the parameters' values, without
+        a reference, from independent parts of the passes.
+
+            tuning = dump.tune(delta=[0.2, 1/3])       # nine radii from 2px to 32px unless given
+            picture = dump.filter(**tuning.best)
+        """
+        with shown(progress, "tune") as report:
+            text, rows, best, notes = self._dump.tune(
+                lists(parameters), no_weights, pass_range(passes, self.passes),
+                camera_number(self, camera), epsilon, max_memory, report)
+        warn(notes)
+        return Tuning(text, rows, best)
+
+    def explain(self, pixel: tuple[int, int] | None = None, *, path: int | None = None,
+                camera: str | None = None, passes: Passes = None, no_weights: bool = False,
+                progress: Progress = None, **parameters: Value) -> Explanation:
+        """What ``psf explain`` does: why a pixel of the filtered picture is what it is.
+
+        ``pixel``: (x, y), (0, 0) at the top left; or one ``path``, by its number in the dump.
+        ``print(dump.explain((x, y)))`` shows the command's text, ``dump.explain((x, y))["sources"]``
+        are figures.
+        """
+        if (pixel is None) == (path is None):
+            raise TypeError("explain: give a pixel (x, y) or a path")
+        with shown(progress, "explain") as report:
+            explained = self._dump.explain(pixel, path or 0, texts(parameters), no_weights,
+                                           pass_range(passes, self.passes),
+                                           camera_number(self, camera), report)
+        warn(explained.notes())
+        return Explanation(explained)
 
     def __repr__(self) -> str:
         return f"<psf.Dump {self.path}: {self.passes} passes, {self.records} records>"

@@ -95,23 +95,48 @@ class Dump:
         self,
         given: Mapping[str, str],
         no_weights: bool,
-        first: int,
-        last: int | None,
+        passes: tuple[int, int | None],
         max_memory: int | None,
-        progress: Callable[[int, int], None] | None,
+        progress: Callable[[int, int], object] | None,
     ) -> FilterResult: ...
     def sweep(
         self,
         reference: Picture,
-        sets: Sequence[Mapping[str, str]],
+        lists: Mapping[str, str],
         no_weights: bool,
         metrics: Sequence[str],
-        first: int,
-        last: int | None,
+        passes: tuple[int, int | None],
         max_memory: int | None,
         camera: int,
-        progress: Callable[[int, int], None] | None,
+        progress: Callable[[int, int], object] | None,
     ) -> list[dict[str, Any]]: ...
+    def tune(
+        self,
+        lists: Mapping[str, str],
+        no_weights: bool,
+        passes: tuple[int, int | None],
+        camera: int,
+        epsilon: float,
+        max_memory: int | None,
+        progress: Callable[[int, int], object] | None,
+    ) -> tuple[str, list[dict[str, Any]], dict[str, str], list[str]]: ...
+    def explain(
+        self,
+        pixel: tuple[int, int] | None,
+        path: int,
+        given: Mapping[str, str],
+        no_weights: bool,
+        passes: tuple[int, int | None],
+        camera: int,
+        progress: Callable[[int, int], object] | None,
+    ) -> Explanation: ...
+
+class Explanation:
+    def text(self, rows: int) -> str: ...
+    def whole_text(self) -> str: ...
+    def json(self) -> str: ...
+    def notes(self) -> list[str]: ...
+    def save(self, path: str) -> None: ...
 
 class DumpWriter:
     def __init__(
@@ -134,11 +159,26 @@ class DumpWriter:
 
 def parameters() -> list[tuple[str, str, str, str]]: ...
 def metric_names() -> list[str]: ...
+def converge(
+    dumps: Sequence[str],
+    reference: Picture,
+    lists: Mapping[str, str],
+    no_weights: bool,
+    passes: int | None,
+    camera: int,
+    epsilon: float,
+    all_metrics: bool,
+    times: bool,
+    render_json: Sequence[str],
+    max_memory: int | None,
+    progress: Callable[[int, int], object] | None,
+) -> tuple[str, str, list[dict[str, Any]], list[str]]: ...
 def filter_records(
     cameras: Sequence[Camera],
     given: Mapping[str, str],
     no_weights: bool,
     n: float,
+    progress: Callable[[int, int], object] | None,
     position: npt.NDArray[np.float32],
     throughput: npt.NDArray[np.float32],
     contribution: npt.NDArray[np.float32],

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, Union
 
 import numpy as np
 import numpy.typing as npt
 
 Value = Union[str, float, bool, None]  # of a parameter
-Progress = Callable[[int, int], None]
 Passes = Union[int, slice, None]  # the first n, or a slice first:last; None: all
 
 
@@ -27,10 +26,21 @@ def texts(given: Mapping[str, Value]) -> dict[str, str]:
     return {name.replace("_", "-"): text(value) for name, value in given.items()}
 
 
-def as_list(value: Value | Iterable[Value]) -> list[Value]:
+def lists(given: Mapping[str, Value | Iterable[Value]]) -> dict[str, str]:
+    """Lists of values as the commands take them: "2px,4px". A text may be a list or a range."""
+    return {name: ",".join(text(one) for one in _as_list(value))
+            for name, value in zip(texts(dict.fromkeys(given)), given.values())}
+
+
+def _as_list(value: Value | Iterable[Value]) -> list[Value]:
     if value is None or isinstance(value, (str, float, int, np.generic)):
         return [value]
     return list(value)
+
+
+def with_underscores(row: Mapping[str, Any]) -> dict[str, Any]:
+    """Names of parameters as those of keywords."""
+    return {name.replace("-", "_"): value for name, value in row.items()}
 
 
 def pass_range(passes: Passes, all: int) -> tuple[int, int | None]:

@@ -1,0 +1,208 @@
+#include "psf/study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <mutex>
+
+#include "core/error.h"
+#include "core/json_text.h"
+#include "metrics/reference.h"
+#include "psf/dump_state.h"
+#include "psf/library.h"
+#include "psf/version.h"
+#include "run/missing_terms.h"
+#include "study/converge_file.h"
+#include "study/parameter_lists.h"
+#include "study/sweep.h"
+#include "study/tune_file.h"
+
+namespace psf {
+namespace {
+
+// The sets for a dump: what it lacks is off where it was not asked for, as `notes` say.
+std::vector<filter::Parameters> fitted(const run::Dump& dump, std::span<const Parameters> sets,
+                                       std::vector<std::string>& notes) {
+  std::vector<filter::Parameters> all;
+  for (const Parameters& set : sets) {
+    all.push_back(to_filter(set));
+    const std::string note =
+        run::switch_off_missing(dump, {&all.back(), 1}, filter::asked_terms(set.given()));
+    if (!note.empty() && std::find(notes.begin(), notes.end(), note) == notes.end()) {
+      notes.push_back(note);
+    }
+    static_cast<void>(
+        dump.select(all.back(), false));  // throws where what was asked for is missing
+  }
+  return all;
+}
+
+void check_camera(const run::Dump& dump, std::size_t camera) {
+  if (camera < dump.cameras().size()) return;
+  throw Error(ErrorCode::usage, fmt::format("`camera`: there is no camera {}", camera));
+}
+
+void check_reference(const Picture& reference, const run::Dump& dump, std::size_t camera) {
+  check_camera(dump, camera);
+  const filter::CameraView& view = dump.cameras()[camera];
+  if (reference.width == view.width && reference.height == view.height) return;
+  throw Error(ErrorCode::bad_input,
+              fmt::format("the reference has {} x {} pixels, the camera {} x {}", reference.width,
+                          reference.height, view.width, view.height));
+}
+
+// As its file is written.
+std::string file_text(const study::Json& json) {
+  return core::json_text(json, 1) + "\n";
+}
+
+TuneRow to_row(const study::TuneRow& row) {
+  return {filter::describe(row.parameters),
+          row.error,
+          row.standard_error,
+          row.bias_sq,
+          row.variance,
+          row.neighbors,
+          row.distance,
+          row.may_be_better};
+}
+
+// A row of study::to_rows(): what is text is a parameter, or names.
+ConvergeRow to_row(const study::Json& json) {
+  ConvergeRow row;
+  row.id = json["id"].get<std::string>();
+  row.n = json["n"].get<std::uint64_t>();
+  const auto& table = filter::parameter_table();
+  for (const auto& [name, value] : json.items()) {
+    const bool is_parameter = std::any_of(
+        table.begin(), table.end(), [&key = name](const auto& one) { return key == one.name; });
+    if (is_parameter) {
+      if (!value.is_null()) row.parameters.emplace_back(name, value.get<std::string>());
+    } else if (name != "n" && (value.is_number() || (value.is_null() && name != "picture"))) {
+      row.values.emplace_back(
+          name, value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>());
+    }
+  }
+  return row;
+}
+
+}  // namespace
+
+std::string tune_radii() {
+  return study::kTuneRadii;
+}
+
+std::vector<SweepRow> Dump::sweep(const Picture& reference, std::span<const Parameters> sets,
+                                  std::span<const std::string> metrics,
+                                  const FilterOptions& options, std::size_t camera) const {
+  const std::shared_lock reading(state_->mutex);
+  check_reference(reference, state_->dump, camera);
+  std::vector<metrics::Metric> measured;
+  for (const std::string& metric : metrics) measured.push_back(metrics::parse_metric(metric));
+  if (measured.empty()) measured = {metrics::Metric::rel_mse};
+  const metrics::Reference prepared(colors_of(reference), reference.width, {}, measured);
+
+  std::vector<std::string> notes;
+  const std::vector<filter::Parameters> rows = fitted(state_->dump, sets, notes);
+  std::vector<SweepRow> result(rows.size());
+  study::SweepRequest request;
+  request.rows = rows;
+  request.passes = to_run(options.passes);
+  request.camera = camera;
+  request.max_memory = options.max_memory;
+  request.on_progress = options.on_progress;
+  request.on_row = [&](std::size_t number, const study::SweepRow& row, const std::vector<Rgb>&) {
+    SweepRow& out = result[number];
+    out.parameters = filter::describe(row.parameters);
+    for (const metrics::Metric metric : measured) {
+      out.errors.emplace_back(metrics::name(metric), row.metrics[metric]);
+    }
+    out.neighbors = row.neighbors;
+    out.seconds = row.seconds;
+  };
+  study::run_sweep(state_->dump, prepared, request);
+  return result;
+}
+
+TuneResult Dump::tune(std::span<const Parameters> sets, const TuneOptions& options) const {
+  const std::shared_lock reading(state_->mutex);
+  check_camera(state_->dump, options.camera);
+  if (sets.empty()) throw Error(ErrorCode::usage, "`sets`: at least one is needed");
+  TuneResult result;
+  const std::vector<filter::Parameters> rows = fitted(state_->dump, sets, result.notes);
+  study::TuneRequest request;
+  request.sets = rows;
+  request.passes = to_run(options.passes);
+  request.camera = options.camera;
+  request.epsilon = options.epsilon;
+  request.max_memory = options.max_memory;
+  request.on_progress = options.on_progress;
+  const study::TuneResult tuning = study::tune(state_->dump, request);
+  for (const study::TuneRow* row : study::by_error(tuning)) result.rows.push_back(to_row(*row));
+  for (const auto& [name, text] : filter::describe(tuning.rows[tuning.best].parameters)) {
+    // How to find the neighbours is the user's to say.
+    if (name != "search") result.best.set(name, text);
+  }
+  result.sure = study::may_be_better(tuning) == 0;
+  result.unfiltered = tuning.unfiltered;
+  result.json = file_text(study::to_json(tuning, state_->dump, request, PSF_VERSION));
+  return result;
+}
+
+ConvergeResult converge(std::span<const std::string> dumps, const Picture& reference,
+                        std::span<const Parameters> sets, const ConvergeOptions& options) {
+  if (dumps.empty()) throw Error(ErrorCode::usage, "`dumps`: at least one is needed");
+  if (sets.empty()) throw Error(ErrorCode::usage, "`sets`: at least one is needed");
+  const run::Dump first(dumps.front());
+  check_reference(reference, first, options.camera);
+  const run::PassSelection passes = to_run({0, options.passes});
+  const std::span<const metrics::Metric> measured =
+      options.all_metrics ? std::span<const metrics::Metric>(metrics::kAllMetrics)
+                          : std::span<const metrics::Metric>(metrics::kPixelMetrics);
+  metrics::MetricOptions how;
+  how.epsilon = options.epsilon;
+  const std::vector<Rgb> picture = colors_of(reference);
+  const metrics::Reference prepared(picture, reference.width, how, measured);
+
+  ConvergeResult result;
+  study::ConvergeReport report;
+  report.version = PSF_VERSION;
+  report.measured = measured;
+  report.metrics = study::describe_metrics(measured, how);
+  report.reference = study::describe_reference(reference.file, picture);
+  std::vector<study::RenderFigures> renders;
+  for (const std::string& json : options.render_json) renders.push_back({"`render_json`", json});
+  if (!renders.empty()) report.time = study::mean_render_time(renders);
+  std::vector<filter::Parameters> rows;
+  for (const std::string& path : dumps) {
+    const run::Dump replicate(path);
+    // What any of them lacks is off for all.
+    std::vector<filter::Parameters> fit = fitted(replicate, sets, result.notes);
+    if (rows.empty()) rows = std::move(fit);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      static_cast<void>(
+          run::switch_off_missing(replicate, {&rows[k], 1}, filter::asked_terms(sets[k].given())));
+    }
+    check_camera(replicate, options.camera);
+    report.inputs.push_back(study::describe_input(replicate, passes, options.camera));
+  }
+  study::ConvergeRequest request;
+  request.sets = rows;
+  request.n = study::powers_up_to(run::last_pass(first, passes));
+  request.camera = options.camera;
+  request.with_times = options.times;
+  request.max_memory = options.max_memory;
+  request.on_progress = options.on_progress;
+  report.series = study::converge(dumps, prepared, picture, request);
+  if (report.time && options.times) {
+    report.speed_ups = study::speed_ups(report.series, *report.time);
+  }
+  for (const study::Json& row : study::to_rows(report)) result.rows.push_back(to_row(row));
+  result.json = file_text(study::to_json(report));
+  result.csv = study::to_csv(report);
+  return result;
+}
+
+}  // namespace psf

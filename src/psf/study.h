@@ -1,0 +1,100 @@
+// Studies of the filter's parameters: sweeps, convergence, and tuning without a reference. What is
+// estimated how stands in src/study/README.md.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "psf/error.h"
+#include "psf/export.h"
+#include "psf/parameters.h"
+#include "psf/passes.h"
+#include "psf/picture.h"
+
+namespace psf {
+
+// Name and text of every parameter.
+using ParameterTexts = std::vector<std::pair<std::string, std::string>>;
+
+// A row of Dump::sweep().
+struct SweepRow {
+  ParameterTexts parameters;
+  std::vector<std::pair<std::string, double>> errors;  // by metric
+  double neighbors = 0;                                // mean over the queries
+  double seconds = 0;                                  // of the traversal it shared
+};
+
+// The radii that psf tune tries unless others are asked for, as a list for
+// Parameters::combinations().
+[[nodiscard]] PSF_API std::string tune_radii();
+
+struct TuneOptions {
+  Passes passes;
+  std::size_t camera = 0;
+  double epsilon = 1e-2;                    // of the relative error: guards dark places
+  std::optional<std::uint64_t> max_memory;  // bytes
+  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};  // paths
+};
+
+// One set of parameters, and estimates of relMSE and its parts for the picture of all passes.
+struct TuneRow {
+  ParameterTexts parameters;
+  double error = 0, standard_error = 0;
+  double bias_sq = 0, variance = 0;
+  double neighbors = 0;           // mean over the queries
+  double sigmas_above_least = 0;  // standard errors between this error and the least
+  bool may_be_better = false;     // its error may be clearly less than that of the choice
+};
+
+struct TuneResult {
+  std::vector<TuneRow> rows;       // least error first
+  Parameters best;                 // the choice, for Dump::filter(): what psf filter --tuned takes
+  bool sure = false;               // no other set may be clearly better
+  double unfiltered = 0;           // relMSE of the picture without filter
+  std::vector<std::string> notes;  // what was switched off, and why
+  std::string json;                // the bytes of psf tune --json
+};
+
+struct ConvergeOptions {
+  std::optional<std::uint64_t> passes;  // the first so many; not set: all of the first dump
+  std::size_t camera = 0;
+  double epsilon = 1e-2;                    // of the relative metrics
+  bool all_metrics = false;                 // SSIM and FLIP too: slower
+  bool times = true;                        // run each set once more to take its time
+  std::vector<std::string> render_json;     // texts that psf-render --json wrote, for speed-ups
+  std::optional<std::uint64_t> max_memory;  // bytes
+  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};  // paths
+};
+
+// One set of parameters after n passes.
+struct ConvergeRow {
+  std::string id;             // "unfiltered", "0001", ...
+  ParameterTexts parameters;  // empty where nothing is filtered
+  std::uint64_t n = 0;
+  // The columns of converge.csv by name: "relMSE", "bias_sq", "variance_ci_low", "slope_variance",
+  // "neighbors" and so on; NaN where there is none.
+  std::vector<std::pair<std::string, double>> values;
+};
+
+struct ConvergeResult {
+  std::vector<ConvergeRow> rows;   // unfiltered first, then the sets in their order; n ascending
+  std::vector<std::string> notes;  // what was switched off, and why
+  std::string json, csv;           // the bytes of the files converge.json and converge.csv
+};
+
+// What psf converge does, without its pictures: the errors of every set after 1, 2, 4, ... passes.
+// `dumps`: files of one scene and with different seeds; from two on bias and variance are told
+// apart, from three on there are intervals. Throws Error{usage}, Error{bad_input}, Error{limit},
+// Error{interrupted}.
+[[nodiscard]] PSF_API ConvergeResult converge(std::span<const std::string> dumps,
+                                              const Picture& reference,
+                                              std::span<const Parameters> sets,
+                                              const ConvergeOptions& options = {});
+
+}  // namespace psf
