@@ -84,20 +84,10 @@ class Explainer {
     const ExplainRequest& request = result_.request;
     const filter::PathRange all = blocks_->all();
     if (request.path) {
-      if (*request.path < all.first || *request.path >= all.last) {
-        refuse(fmt::format("`path`: {} is not among the paths {} to {} of the passes chosen",
-                           *request.path, all.first, all.last - 1));
-      }
       records_of_paths_ = {*request.path};
       return;
     }
-    if (request.camera >= dump_.cameras().size()) refuse("`camera`: there is no such camera");
     const filter::CameraView& camera = dump_.cameras()[request.camera];
-    if (request.x >= camera.width || request.y >= camera.height) {
-      refuse(fmt::format("`pixel`: {},{} is outside the picture of {}, 0,0 to {},{}", request.x,
-                         request.y, name_of(dump_, request.camera), camera.width - 1,
-                         camera.height - 1));
-    }
     run::ChannelSet pixels;
     pixels.pixel = channels_.pixel;
     pixels.camera = channels_.camera;
@@ -190,7 +180,7 @@ class Explainer {
 
 }  // namespace
 
-ExplainResult explain(const run::Dump& dump, const ExplainRequest& request) {
+void check(const run::Dump& dump, const ExplainRequest& request) {
   request.parameters.validate();
   if (!filter::info(request.parameters.estimator).is_of_ball) {
     std::vector<std::string_view> names;
@@ -200,6 +190,23 @@ ExplainResult explain(const run::Dump& dump, const ExplainRequest& request) {
     refuse(fmt::format("`estimator`: only those that average over a ball can be explained: {}",
                        fmt::join(names, ", ")));
   }
+  const std::uint64_t last = dump.pass_bounds()[run::last_pass(dump, request.passes)];
+  const std::uint64_t first = dump.pass_bounds()[request.passes.first];
+  if (request.path) {
+    if (*request.path >= first && *request.path < last) return;
+    refuse(fmt::format("`path`: {} is not among the paths {} to {} of the passes chosen",
+                       *request.path, first, last - 1));
+  }
+  if (request.camera >= dump.cameras().size()) refuse("`camera`: there is no such camera");
+  const filter::CameraView& camera = dump.cameras()[request.camera];
+  if (request.x < camera.width && request.y < camera.height) return;
+  refuse(fmt::format("`pixel`: {},{} is outside the picture of {}, 0,0 to {},{}", request.x,
+                     request.y, name_of(dump, request.camera), camera.width - 1,
+                     camera.height - 1));
+}
+
+ExplainResult explain(const run::Dump& dump, const ExplainRequest& request) {
+  check(dump, request);
   return Explainer(dump, request).run();
 }
 

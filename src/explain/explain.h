@@ -76,11 +76,15 @@ struct ExplainResult {
   std::vector<ExplainedPair> pairs;  // by path, then by record
 };
 
+// Throws Error{usage} for parameters that do not go together, for a camera, pixel, path or passes
+// that the dump does not have, and for estimators that average over no ball: what explain() throws
+// before it reads records.
+void check(const run::Dump& dump, const ExplainRequest& request);
+
 // Explains what psf filter does with the same parameters; of several iterations it explains the
 // last. Reads the pixel numbers of all selected paths, and the whole blocks that hold a path of
-// this pixel. Throws Error{usage} for a camera, pixel, path or passes that the dump does not have
-// and for other estimators, Error{bad_input} where no path falls into the pixel, Error{limit} above
-// `most_pairs`, Error{interrupted}, and what filter_dump() throws.
+// this pixel. Throws Error{bad_input} where no path falls into the pixel, Error{limit} above
+// `most_pairs`, Error{interrupted}, and what check() and filter_dump() throw.
 [[nodiscard]] ExplainResult explain(const run::Dump& dump, const ExplainRequest& request);
 
 }  // namespace psf::explain

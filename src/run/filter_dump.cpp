@@ -19,18 +19,6 @@ namespace {
 using core::Clock;
 using core::seconds_since;
 
-void check_snapshots(const Dump& dump, const std::vector<std::uint64_t>& snapshots,
-                     std::uint64_t passes) {
-  for (const std::uint64_t snapshot : snapshots) {
-    if (snapshot >= 1 && snapshot <= passes) continue;
-    throw Error(ErrorCode::usage, fmt::format("{}: no snapshot after {} of {} passes",
-                                              dump.reader().path(), snapshot, passes));
-  }
-  if (!std::is_sorted(snapshots.begin(), snapshots.end())) {
-    throw Error(ErrorCode::usage, "`snapshots`: the numbers of passes must ascend");
-  }
-}
-
 class DumpFilter {
  public:
   // `copies`: of the pictures that are kept at once.
@@ -44,7 +32,6 @@ class DumpFilter {
 
   // All passes up to `last`, not included.
   FilterResult run(std::size_t last) {
-    check_snapshots(dump_, run_.snapshots, last - first_);
     set_last(last);
     if (blocks_.visit_whole(visitor_)) blocks_.visit_rest(visitor_);
     return std::move(outcome_);
@@ -133,10 +120,22 @@ class DumpFilter {
 
 }  // namespace
 
-FilterResult filter_dump(const Dump& dump, const FilterRequest& run) {
+void check(const Dump& dump, const FilterRequest& run) {
   run.parameters.validate();
-  const std::size_t last = last_pass(dump, run.passes);
-  return DumpFilter(dump, run, 1).run(last);
+  const std::uint64_t passes = last_pass(dump, run.passes) - run.passes.first;
+  for (const std::uint64_t snapshot : run.snapshots) {
+    if (snapshot >= 1 && snapshot <= passes) continue;
+    throw Error(ErrorCode::usage, fmt::format("{}: no snapshot after {} of {} passes",
+                                              dump.reader().path(), snapshot, passes));
+  }
+  if (!std::is_sorted(run.snapshots.begin(), run.snapshots.end())) {
+    throw Error(ErrorCode::usage, "`snapshots`: the numbers of passes must ascend");
+  }
+}
+
+FilterResult filter_dump(const Dump& dump, const FilterRequest& run) {
+  check(dump, run);
+  return DumpFilter(dump, run, 1).run(last_pass(dump, run.passes));
 }
 
 FilterResult follow_dump(Dump& dump, const FilterRequest& run,

@@ -92,12 +92,14 @@ TEST_CASE("A convergence study refuses what are no replicates") {
 
 TEST_CASE("On the built-in scenes the slopes are those of theory") {
   const TempFolder folder;
-  const Outcome outcome =
-      run("psf converge --analytic --quiet --delta 0.333333,0.5 -o " + folder / "out");
+  const Outcome outcome = run("psf converge --analytic --quiet --delta 0.333333,0.5 -o " +
+                              folder / "out --json " + folder / "all.json");
   INFO(outcome.out << outcome.err);
   CHECK(outcome.code == 0);
   CHECK(outcome.out.find("FAILED") == std::string::npos);
   CHECK(json::parse(read_text(folder / "out/edge/converge.json")).at("analytic").at("passed") ==
         true);
+  CHECK(json::parse(read_text(folder / "all.json")).at("edge") ==
+        json::parse(read_text(folder / "out/edge/converge.json")));
   CHECK_FALSE(std::filesystem::exists(folder / "out/edge/0.pvb"));
 }

@@ -115,6 +115,23 @@ TEST_CASE("Terms that are on by default and whose channel is missing are off, wi
   }
 }
 
+TEST_CASE("What cannot be done is one line: no note comes before it") {
+  const TempFolder folder;
+  write(folder / "a.pvb", 1);
+  write_reference(folder);
+  for (const std::string verb :
+       {"filter <dump> -o <out>.exr --snapshots 99", "filter <dump> -o <out>.exr --passes 0:99",
+        "filter <dump> -o <out>.exr --camera other", "tune <dump> --passes 0:99",
+        "sweep <dump> --reference <reference> -o <out>.s --passes 0:99",
+        "converge <dump> --reference <reference> -o <out>.c --passes 0:99",
+        "explain <dump> --pixel 99,4", "explain <dump> --pixel 3,4 --passes 0:99"}) {
+    const Outcome outcome = run(command(verb, folder, folder / "a.pvb"));
+    INFO(verb << ": " << outcome.err);
+    CHECK(outcome.code == 2);
+    CHECK(count(outcome.err, "\n") == 1);
+  }
+}
+
 TEST_CASE("What is there stays on, and a note names the rest alone") {
   const TempFolder folder;
   write(folder / "a.pvb", 1, {"normal", "visibility"});

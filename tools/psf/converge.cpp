@@ -1,7 +1,6 @@
 // psf converge: how the error falls as samples accumulate, with bias and variance apart.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -137,8 +136,8 @@ void run_dumps(const ConvergeOptions& options) {
   print_and_write(options, folder.path(), report);
 }
 
-bool run_analytic(const ConvergeOptions& options, study::AnalyticScene scene,
-                  std::span<const filter::Parameters> sets) {
+study::ConvergeReport run_analytic(const ConvergeOptions& options, study::AnalyticScene scene,
+                                   std::span<const filter::Parameters> sets) {
   const std::string name = study::Analytic(scene).name();
   const std::string folder = (std::filesystem::path(options.study.folder) / name).string();
   std::filesystem::create_directories(folder);
@@ -152,8 +151,7 @@ bool run_analytic(const ConvergeOptions& options, study::AnalyticScene scene,
   write(folder, report);
   fmt::print("{}\n", name);
   print_checks(report);
-  return std::all_of(report.checks.begin(), report.checks.end(),
-                     [](const study::SlopeCheck& check) { return check.passed; });
+  return report;
 }
 
 void run(const ConvergeOptions& options) {
@@ -173,9 +171,13 @@ void run(const ConvergeOptions& options) {
   }
   const std::vector<filter::Parameters> sets = all_sets(lists);
   bool passed = true;
+  study::Json figures;
   for (const auto scene : {study::AnalyticScene::smooth, study::AnalyticScene::edge}) {
-    passed = run_analytic(options, scene, sets) && passed;
+    const study::ConvergeReport report = run_analytic(options, scene, sets);
+    figures[study::Analytic(scene).name()] = study::to_json(report);
+    for (const study::SlopeCheck& check : report.checks) passed = passed && check.passed;
   }
+  if (!options.common.json.empty()) core::write_json_file(options.common.json, figures, 1);
   if (!passed) {
     throw Error(ErrorCode::comparison,
                 "--analytic: a slope is off its theory by more than 0.1; see the table");

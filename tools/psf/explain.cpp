@@ -77,6 +77,7 @@ void run(const ExplainOptions& options) {
   request.camera = camera_of(options, dump);
   std::vector<std::string> notes;
   fit_terms(dump, {&request.parameters, 1}, filter::asked_terms(options.given), notes);
+  explain::check(dump, request);
   print_notes(notes, options.common.quiet);
 
   core::Progress bar("explain", options.common.quiet);

@@ -185,6 +185,7 @@ void run(const FilterOptions& options) {
   const std::uint64_t last = run.passes.last.value_or(dump.pass_bounds().size() - 1);
   run.snapshots =
       snapshots_of(options.snapshots, last > run.passes.first ? last - run.passes.first : 0);
+  if (!options.follow) run::check(dump, run);
   PictureWriter writer(options, dump, run);
   print_notes(notes, options.common.quiet);
 

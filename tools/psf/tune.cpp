@@ -105,6 +105,7 @@ void run(const TuneOptions& options) {
   study::TuneRequest tune;
   tune.sets = sets;
   tune.passes = parse_passes(options.passes);
+  static_cast<void>(run::last_pass(dump, tune.passes));
   tune.camera = find_camera(dump, options.camera);
   tune.epsilon = options.epsilon;
   tune.max_memory = options.max_memory;
