@@ -4,8 +4,10 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <string_view>
 
 #include "explain/remedies.h"
+#include "filter/channels.h"
 #include "filter/values.h"
 #include "filter/weights.h"
 #include "search/ball.h"
@@ -158,20 +160,28 @@ class Tracer {
     for (std::size_t k = 0; k < result_.leak; ++k) leaking_[result_.sources[k].vertex] = true;
   }
 
-  void group() {
+  [[nodiscard]] filter::WeightTerms terms_that_tell_apart() const {
     filter::WeightTerms apart = e_.request.parameters.weights;
     const filter::WeightTerms defaults;
-    const auto has = [](const auto& column) { return !column.empty(); };
-    if (!apart.normal && has(e_.vertices.normal)) apart.normal = defaults.normal;
-    if (!apart.reflectance && has(e_.vertices.reflectance))
-      apart.reflectance = defaults.reflectance;
-    if (!apart.plane && has(e_.vertices.normal)) apart.plane = kPlaneApart;
-    apart.visibility = has(e_.vertices.visibility);
-    apart.material = has(e_.vertices.material);
-    apart.hit_distance.reset();
-    apart.direction.reset();
-    apart.gloss.reset();
-    const filter::Weights weights(e_.vertices.view(), apart);
+    for (std::size_t k = 0; k < filter::kTermCount; ++k) {
+      const filter::TermInfo& term = filter::kTerms[k];
+      const bool is_possible =
+          std::all_of(term.channels.begin(), term.channels.end(), [this](std::string_view channel) {
+            return channel.empty() || filter::has_channel(e_.vertices, channel);
+          });
+      if (std::string_view(term.apart).empty()) {
+        apart.switch_off(static_cast<filter::Term>(k));
+      } else if (term.threshold == nullptr) {
+        apart.*term.is_on = is_possible;
+      } else if (is_possible && !(apart.*term.threshold)) {
+        apart.*term.threshold = (defaults.*term.threshold).value_or(kApart);
+      }
+    }
+    return apart;
+  }
+
+  void group() {
+    const filter::Weights weights(e_.vertices.view(), terms_that_tell_apart());
     std::map<std::uint32_t, KindShare> kinds;
     std::map<std::pair<std::uint16_t, std::uint32_t>, PixelShare> pixels;
     std::vector<bool> met(e_.record.size(), false);

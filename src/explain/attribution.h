@@ -54,11 +54,11 @@ struct PixelShare {
 };
 
 // The averaged pairs, without those of a path with itself, by the set of terms that would tell the
-// two records apart. The thresholds are those of the run, or the filter's defaults, and kPlaneApart
-// for `plane`.
-inline constexpr float kPlaneApart = 0.25f;
+// two records apart. The thresholds are those of the run, or the filter's defaults, or kApart where
+// it has none (`plane`).
+inline constexpr float kApart = 0.25f;
 struct KindShare {
-  std::uint32_t terms = 0;  // bit k: term k of kTermNames; never hit-distance, direction, gloss
+  std::uint32_t terms = 0;  // bit k: term k, of those with TermInfo::apart
   std::uint64_t pairs = 0, leaking = 0;
   Colour excess{0, 0, 0};
 };

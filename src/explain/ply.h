@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 #include <string>
 
 #include "explain/attribution.h"
+#include "filter/parameters/terms.h"
 
 namespace psf::explain {
 
@@ -27,8 +29,9 @@ std::uint64_t write_ply(const ExplainResult& explanation, const Attribution& whe
 
 // The colour of each term of filter::kTermNames: blue, orange, sky blue, green, yellow, vermilion,
 // purple, black. Colour-blind people can tell these apart too (Okabe and Ito).
-inline constexpr std::uint8_t kTermColours[8][3] = {{0, 114, 178},   {230, 159, 0},  {86, 180, 233},
-                                                    {0, 158, 115},   {240, 228, 66}, {213, 94, 0},
-                                                    {204, 121, 167}, {0, 0, 0}};
+inline constexpr std::uint8_t kTermColours[][3] = {{0, 114, 178},   {230, 159, 0},  {86, 180, 233},
+                                                   {0, 158, 115},   {240, 228, 66}, {213, 94, 0},
+                                                   {204, 121, 167}, {0, 0, 0}};
+static_assert(std::size(kTermColours) == filter::kTermCount);
 
 }  // namespace psf::explain

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 
 #include "filter/weights.h"
 
@@ -22,6 +23,7 @@ ColumnPlan::ColumnPlan(const WeightTerms& terms) {
   take(terms.direction || terms.gloss, direction, 3);
   take(terms.material, material, 1);
   take(terms.gloss.has_value(), lobe_width, 1);
+  assert(count <= kMaxColumns);
 }
 
 void ColumnPlan::gather(const Records& records, std::span<const std::uint32_t> chosen,

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <iterator>
 #include <string_view>
+#include <utility>
 
 #include "core/error.h"
 
@@ -176,7 +178,7 @@ Parameter estimator_row() {
 constexpr std::array<const char*, 2> kCountNames = {"samples", "blocks"};         // of RadiusCount
 constexpr std::array<const char*, 3> kEngineNames = {"flann", "plain", "brute"};  // of EngineKind
 
-const Parameter kTable[] = {
+const Parameter kBeforeTerms[] = {
     {"r0",
      "R",
      "radius: 8px, 0.02 of the distance, 0.5wu",
@@ -211,14 +213,9 @@ const Parameter kTable[] = {
      {},
      [](const Parameters& p) { return to_text(p.block); },
      [](Parameters& p, const std::string& text) { p.block = parse_block(text); }},
-    term_row<Term::normal>(),
-    term_row<Term::reflectance>(),
-    term_row<Term::visibility>(),
-    term_row<Term::hit_distance>(),
-    term_row<Term::plane>(),
-    term_row<Term::direction>(),
-    term_row<Term::material>(),
-    term_row<Term::gloss>(),
+};
+
+const Parameter kAfterTerms[] = {
     {"demodulate",
      "on|off",
      "average c / rho and multiply by rho: textures stay sharp",
@@ -271,6 +268,20 @@ const Parameter kTable[] = {
      }},
 };
 
+// A row for each term, in their order.
+template <std::size_t... kTerm>
+std::vector<Parameter> term_rows(std::index_sequence<kTerm...>) {
+  return {term_row<static_cast<Term>(kTerm)>()...};
+}
+
+std::vector<Parameter> make_table() {
+  std::vector<Parameter> table(std::begin(kBeforeTerms), std::end(kBeforeTerms));
+  const std::vector<Parameter> terms = term_rows(std::make_index_sequence<kTermCount>());
+  table.insert(table.end(), terms.begin(), terms.end());
+  table.insert(table.end(), std::begin(kAfterTerms), std::end(kAfterTerms));
+  return table;
+}
+
 }  // namespace
 
 std::string to_text(const Radius& radius) {
@@ -291,12 +302,13 @@ std::string to_text(const BlockSize& block) {
 }
 
 std::span<const Parameter> parameter_table() {
-  return kTable;
+  static const std::vector<Parameter> table = make_table();
+  return table;
 }
 
 const Parameter& find_parameter(std::string_view name) {
   std::vector<std::string_view> names;
-  for (const Parameter& parameter : kTable) {
+  for (const Parameter& parameter : parameter_table()) {
     if (name == parameter.name) return parameter;
     names.emplace_back(parameter.name);
   }
@@ -326,7 +338,7 @@ TermSet asked_terms(const std::map<std::string, std::string>& given) {
 
 std::vector<std::pair<std::string, std::string>> describe(const Parameters& parameters) {
   std::vector<std::pair<std::string, std::string>> texts;
-  for (const Parameter& parameter : kTable) {
+  for (const Parameter& parameter : parameter_table()) {
     texts.emplace_back(parameter.name, parameter.text(parameters));
   }
   return texts;
