@@ -12,10 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "core/apart.h"
 #include "core/error.h"
 #include "core/interrupt.h"
-#include "core/output_file.h"
 #include "core/standard_streams.h"
 
 namespace psf::tools {
@@ -99,13 +97,6 @@ void add_common(CLI::App& command, CommonOptions& options, bool with_json) {
   if (with_json) {
     command.add_option("--json", options.json, "write the figures to this file, for programs")
         ->type_name("FILE");
-  }
-}
-
-void check_files(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
-  core::check_apart(inputs, outputs);
-  for (const std::string& path : outputs) {
-    if (!path.empty()) const core::OutputFile probe(path);
   }
 }
 

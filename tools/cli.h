@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/apart.h"
+
 namespace psf::tools {
 
 struct CommonOptions {
@@ -14,9 +16,8 @@ struct CommonOptions {
   std::string json;  // file for the figures as JSON; empty: none
 };
 
-// Checks the files of a verb before it works. Throws Error{usage} where an output is an input or
-// another output (core/apart.h), Error{io} where one cannot be written. Empty names are ignored.
-void check_files(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
+// Checks the files of a verb before it works.
+using core::check_files;
 
 // Adds --threads, --quiet and, unless `with_json` is false, --json.
 void add_common(CLI::App& command, CommonOptions& options, bool with_json = true);

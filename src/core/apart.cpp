@@ -78,4 +78,11 @@ void check_apart(std::span<const std::string> inputs, std::span<const std::strin
   }
 }
 
+void check_files(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
+  check_apart(inputs, outputs);
+  for (const std::string& path : outputs) {
+    if (!path.empty()) const OutputFile probe(path);
+  }
+}
+
 }  // namespace psf::core

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 namespace psf::core {
 
@@ -11,5 +12,9 @@ namespace psf::core {
 // Empty names are ignored; a device or a pipe may be input and output at once. The files need not
 // exist, and none is opened.
 void check_apart(std::span<const std::string> inputs, std::span<const std::string> outputs);
+
+// Checks files before anything is done: check_apart(), and Error{io} where an output cannot be
+// written. Empty names are ignored.
+void check_files(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
 }  // namespace psf::core

@@ -49,6 +49,8 @@ class Dump:
 
     def __init__(self, path: str) -> None:
         self._dump = _psf.Dump(path)
+        self.rendered: dict[str, Any] | None = None
+        """The figures of psf.render(), where that made the dump."""
 
     @property
     def path(self) -> str:

@@ -28,14 +28,17 @@ def texts(given: Mapping[str, Value]) -> dict[str, str]:
 
 def lists(given: Mapping[str, Value | Iterable[Value]]) -> dict[str, str]:
     """Lists of values as the commands take them: "2px,4px". A text may be a list or a range."""
-    return {name: ",".join(text(one) for one in _as_list(value))
-            for name, value in zip(texts(dict.fromkeys(given)), given.values())}
+    return {name.replace("_", "-"): ",".join(text(one) for one in _as_list(name, value))
+            for name, value in given.items()}
 
 
-def _as_list(value: Value | Iterable[Value]) -> list[Value]:
+def _as_list(name: str, value: Value | Iterable[Value]) -> list[Value]:
     if value is None or isinstance(value, (str, float, int, np.generic)):
         return [value]
-    return list(value)
+    values = list(value)
+    if not values:
+        raise ValueError(f"{name}: an empty list")
+    return values
 
 
 def with_underscores(row: Mapping[str, Any]) -> dict[str, Any]:

@@ -171,6 +171,9 @@ void Loop::trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t firs
       rays_ += rays;
     });
     paths_done_ += size;
+    if (settings_.on_progress) {
+      settings_.on_progress(paths_done_, settings_.passes * paths_a_pass_);
+    }
     const double rate =
         static_cast<double>(rays_) / std::max(1e-9, seconds_before_ + seconds_since(start_));
     progress_->advance(paths_done_, settings_.passes * paths_a_pass_,

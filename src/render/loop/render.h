@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -26,7 +27,8 @@ struct RenderSettings {
   double time_limit = std::numeric_limits<double>::infinity();  // seconds; the pass is finished
   bool replay = true;  // on resume, read the passes of the file back into the films
   std::string producer = "psf-render";
-  bool quiet = false;
+  bool quiet = false;                                                        // no bar on stderr
+  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress;  // paths
 
   // Throws Error{usage} for what is out of range, Error{limit} for more paths than can be numbered.
   void validate(const Scene& scene) const;

@@ -1,0 +1,96 @@
+"""Rendering: what psf-render does."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import tempfile
+import weakref
+from collections.abc import Sequence
+from types import ModuleType
+from typing import Any, Union
+
+from psf._dump import Dump
+from psf._parameters import Parameter
+from psf._picture import Picture, read_picture
+from psf._progress import Progress, shown
+from psf._studies import warn
+from psf._values import text
+
+Setting = Union[str, float, bool, Sequence[Union[str, float]]]
+
+
+def _renderer() -> ModuleType:
+    try:
+        from psf import _render
+    except ImportError as error:
+        raise ImportError(
+            "psf.render: this package was built without the renderer, or does not find Embree "
+            f"and OpenImageIO ({error}); build it with -DPSF_BUILD_RENDER=ON") from error
+    return _render
+
+
+def _settings(given: dict[str, Setting]) -> list[tuple[str, str]]:
+    """Each as the command takes it: size=(256, 256) is "256x256", eye=(0, 2, 6) is "0,2,6"."""
+    pairs = []
+    for name, value in given.items():
+        name = name.replace("_", "-")
+        values = [value] if isinstance(value, str) or not hasattr(value, "__iter__") else list(value)
+        if name in ("camera", "channels"):
+            pairs += [(name, text(one)) for one in values]
+        else:
+            pairs.append((name, ("x" if name == "size" else ",").join(text(one) for one in values)))
+    return pairs
+
+
+def _render(scene: str, output: str, images: str | Sequence[str], resume: bool,
+            progress: Progress, given: dict[str, Setting]) -> dict[str, Any]:
+    files = [images] if isinstance(images, str) else list(images)
+    with shown(progress, "render") as report:
+        figures, notes = _renderer().render(scene, output, files, resume, _settings(given), report)
+    warn(notes, stacklevel=4)
+    loaded: dict[str, Any] = json.loads(figures)
+    return loaded
+
+
+def render(scene: str, output: str | None = None, *, image: str | Sequence[str] = (),
+           resume: bool = False, progress: Progress = None, **settings: Setting) -> Dump:
+    """What ``psf-render`` does: renders a scene into a dump, and opens it.
+
+        dump = psf.render("cornell.json", "cornell.pvb", passes=16, size=(256, 256))
+
+    Without ``output`` the dump is a temporary file, which goes with what is returned. ``image``:
+    pictures without filter to write beside it, .exr or .png. ``resume``: go on with a dump that is
+    there, after ^C or to add passes. The other settings are those of the command, by the same names
+    with underscores: numbers, text, and sequences for sizes, places and colours;
+    ``psf.render_settings()`` lists them. ``rendered`` of the dump are the figures that the command
+    writes with ``--json``.
+    """
+    if output is not None:
+        figures = _render(scene, output, image, resume, progress, settings)
+        dump = Dump(output)
+    else:
+        folder = tempfile.mkdtemp(prefix="psf-")
+        try:
+            path = os.path.join(folder, os.path.splitext(os.path.basename(scene))[0] + ".pvb")
+            figures = _render(scene, path, image, resume, progress, settings)
+            dump = Dump(path)
+        except BaseException:
+            shutil.rmtree(folder)
+            raise
+        weakref.finalize(dump, shutil.rmtree, folder)
+    dump.rendered = figures
+    return dump
+
+
+def render_picture(scene: str, path: str, *, progress: Progress = None,
+                   **settings: Setting) -> Picture:
+    """What ``psf-render --image`` does without a dump: writes the picture without filter, of one
+    camera, and reads it. References are made so: ``passes=4096, seed=1``."""
+    return read_picture(_render(scene, "", path, False, progress, settings)["images"][0])
+
+
+def render_settings() -> list[Parameter]:
+    """Every setting of render() that is the scene's, the sampler's or the integrator's."""
+    return [Parameter(name.replace("-", "_"), *rest) for name, *rest in _renderer().options()]

@@ -1,0 +1,141 @@
+"""psf.render() writes what psf-render writes: records, pictures, figures, errors.
+
+    render_test.py PACKAGE PROGRAMS SAMPLE_DATA
+"""
+
+import gc
+import json
+import os
+import signal
+import sys
+import tempfile
+import threading
+import unittest
+import warnings
+
+import numpy as np
+
+from support import CORNELL, PACKAGE, content, run
+
+import psf
+
+if not any(name.startswith("_render.") and name.endswith(".so")
+           for name in os.listdir(os.path.join(PACKAGE, "psf"))):
+    print("skipped: built without the renderer")
+    sys.exit(77)
+
+
+class Render(unittest.TestCase):
+    def setUp(self) -> None:
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def file(self, name: str) -> str:
+        return os.path.join(self.folder.name, name)
+
+    def same_dump(self, a: psf.Dump, b: psf.Dump) -> None:
+        self.assertEqual(a.metadata, b.metadata)
+        self.assertEqual([one.name for one in a.channels], [one.name for one in b.channels])
+        for channel in a.channels:
+            self.assertEqual(a[channel.name][:].tobytes(), b[channel.name][:].tobytes())
+
+    def test_a_render_is_that_of_the_command(self) -> None:
+        run("psf-render", CORNELL, "--size", "20x16", "--passes", "3", "--seed", "7", "--sampler",
+            "halton", "--shade-rate", "1/2", "--sun", "0,1,0.5", "--sun-irradiance", "2",
+            "--channels", "normal,visibility", "-o", self.file("c.pvb"), "--image",
+            self.file("c.exr"), "--image", self.file("c.png"), "--quiet")
+        dump = psf.render(CORNELL, self.file("p.pvb"), size=(20, 16), passes=3, seed=7,
+                          sampler="halton", shade_rate="1/2", sun=(0, 1, 0.5), sun_irradiance=2,
+                          channels=["normal", "visibility"],
+                          image=[self.file("p.exr"), self.file("p.png")])
+        self.same_dump(dump, psf.open(self.file("c.pvb")))
+        for end in ("exr", "png"):
+            self.assertEqual(content(self.file("p." + end)), content(self.file("c." + end)))
+        self.assertEqual((dump.passes, dump.rendered["paths"]), (3, 3 * 20 * 16))
+        self.assertEqual(dump.rendered["bytes"], os.path.getsize(self.file("p.pvb")))
+
+    def test_the_figures_are_named_as_those_of_the_command(self) -> None:
+        run("psf-render", CORNELL, "--size", "4x4", "--passes", "1", "-o", self.file("c.pvb"),
+            "--json", self.file("c.json"), "--quiet")
+        dump = psf.render(CORNELL, self.file("p.pvb"), size=(4, 4), passes=1)
+        with open(self.file("c.json"), encoding="utf-8") as file:
+            expected = json.load(file)
+        self.assertEqual(list(dump.rendered), list(expected))
+        for name in ("scene", "passes", "paths", "rays", "non_finite", "images"):
+            self.assertEqual(dump.rendered[name], expected[name])
+
+    def test_without_a_name_the_dump_goes_with_what_holds_it(self) -> None:
+        dump = psf.render(CORNELL, size=(8, 8), passes=2)
+        path = dump.path
+        self.assertEqual(os.path.basename(path), "cornell.pvb")
+        positions = dump["position"]
+        del dump
+        gc.collect()
+        self.assertEqual(positions[:].shape, (2 * 64, 3))  # what is open can be read
+        self.assertFalse(os.path.exists(os.path.dirname(path)))
+
+    def test_a_picture_needs_no_dump(self) -> None:
+        run("psf-render", CORNELL, "--size", "8x8", "--passes", "4", "--image", self.file("c.exr"),
+            "--quiet")
+        picture = psf.render_picture(CORNELL, self.file("p.exr"), size=(8, 8), passes=4)
+        self.assertEqual(content(self.file("p.exr")), content(self.file("c.exr")))
+        self.assertTrue(np.array_equal(picture.rgb, psf.read_picture(self.file("c.exr")).rgb))
+        self.assertEqual(os.listdir(self.folder.name).count("p.pvb"), 0)
+
+    def test_a_render_goes_on(self) -> None:
+        path = self.file("a.pvb")
+        psf.render(CORNELL, path, size=(8, 8), passes=2)
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            dump = psf.render(CORNELL, path, size=(8, 8), passes=5, resume=True)
+        self.assertIn("has 2 of 5 passes", str(said[0].message))
+        self.assertEqual(said[0].filename, __file__)
+        self.same_dump(dump, psf.render(CORNELL, size=(8, 8), passes=5))
+
+    def test_mistakes_are_one_line(self) -> None:
+        for arguments, code, text in (
+                (dict(scene="none.json"), 4, "none.json"),
+                (dict(passes=0), 2, "passes: expected a whole number from 1"),
+                (dict(size=(0, 3)), 2, 'size: expected WxH in pixels'),
+                (dict(colour=3), 2, "there is no option 'colour'; there are codec"),
+                (dict(camera="nobody"), 2, 'no camera is called "nobody"'),
+                (dict(channels="nothing"), 2, "nothing"),
+                (dict(output=self.file("a.exr")), 2, "image writes pictures"),
+                (dict(output=self.file("none/a.pvb")), 4, "none"),
+                (dict(output=CORNELL), 2, "cornell.json")):
+            with self.assertRaises(psf.Error) as raised:
+                psf.render(**{"scene": CORNELL, **arguments})
+            self.assertEqual(raised.exception.code, code, raised.exception)
+            self.assertIn(text, str(raised.exception))
+            self.assertNotIn("`", str(raised.exception))
+            self.assertNotIn("\n", str(raised.exception))
+
+    def test_an_interrupt_ends_a_render_after_its_pass(self) -> None:
+        path = self.file("a.pvb")
+        started = threading.Event()
+
+        def stop() -> None:
+            started.wait()
+            os.kill(os.getpid(), signal.SIGINT)
+
+        thread = threading.Thread(target=stop)
+        thread.start()
+        with self.assertRaises(KeyboardInterrupt):
+            psf.render(CORNELL, path, size=(32, 32), passes=1 << 20,
+                       progress=lambda done, total: started.set() if done > 1024 else None)
+        thread.join()
+        kept = psf.open(path)
+        self.assertGreater(kept.passes, 0)
+        self.assertEqual(kept.records, kept.passes * 32 * 32)
+
+    def test_the_settings_are_the_options_of_the_command(self) -> None:
+        said = run("psf-render", "--help")
+        settings = psf.render_settings()
+        self.assertGreater(len(settings), 20)
+        for setting in settings:
+            self.assertIn("--" + setting.name.replace("_", "-") + " ", said)
+        self.assertEqual({one.name: one.default for one in settings}["passes"], "16")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=["render_test"])

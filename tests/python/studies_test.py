@@ -1,0 +1,151 @@
+"""Studies give the figures of their commands to the last digit, and the bytes of their files.
+
+    studies_test.py PACKAGE PROGRAMS SAMPLE_DATA
+"""
+
+import json
+import math
+import os
+import tempfile
+import unittest
+import warnings
+
+from support import CORNELL, content, run
+
+import psf
+
+
+class Studies(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.folder = tempfile.TemporaryDirectory()
+        size = ["--size", "24x24", "--quiet"]
+        cls.paths = [cls.file(f"{seed}.pvb") for seed in range(3)]
+        for seed, path in enumerate(cls.paths):
+            run("psf-render", CORNELL, *size, "--passes", "8", "--seed", str(seed), "-o", path,
+                "--json", path + ".json")
+        cls.reference = cls.file("reference.exr")
+        run("psf-render", CORNELL, *size, "--passes", "32", "--seed", "9", "--image", cls.reference)
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        cls.folder.cleanup()
+
+    @classmethod
+    def file(cls, name: str) -> str:
+        return os.path.join(cls.folder.name, name)
+
+    def test_tune_gives_the_figures_of_the_command(self) -> None:
+        command = self.file("tune.json")
+        run("psf", "tune", self.paths[0], "--delta", "0.2,0.333333", "--normal", "0.9,off",
+            "--json", command)
+        dump = psf.open(self.paths[0])
+        tuning = dump.tune(normal=[0.9, None], delta=[0.2, 0.333333])
+        tuning.save(self.file("same.json"))
+        self.assertEqual(content(self.file("same.json")), content(command))
+        with open(command, encoding="utf-8") as file:
+            self.assertEqual(dict(tuning), json.load(file))
+        self.assertEqual(len(tuning.rows), 9 * 2 * 2)
+        self.assertEqual([row["error"] for row in tuning.rows],
+                         [row["error"] for row in tuning["rows"]])
+        self.assertEqual(tuning.rows[0]["r0"], tuning.best["r0"])
+        run("psf", "filter", self.paths[0], "--tuned", command, "-o", self.file("c.exr"), "--quiet")
+        dump.filter(**tuning.best).save(self.file("p.exr"))
+        self.assertEqual(content(self.file("c.exr")), content(self.file("p.exr")))
+
+    def test_converge_gives_the_files_of_the_command(self) -> None:
+        run("psf", "converge", *self.paths, "--reference", self.reference, "--r0", "2px:8px:x2",
+            "--normal", "0.9,off", "--no-times", "--quiet", "-o", self.file("command"))
+        study = psf.converge([psf.open(self.paths[0]), *self.paths[1:]], self.reference,
+                             normal=[0.9, None], r0="2px:8px:x2", times=False)
+        study.save(self.file("same"))
+        for name in ("converge.json", "converge.csv"):
+            self.assertEqual(content(self.file("same/" + name)),
+                             content(self.file("command/" + name)), name)
+        # Flat rows: those of the points of the series, in the same order.
+        points = [(series["id"], point) for series in study["series"] for point in series["points"]]
+        self.assertEqual(len(study.rows), len(points))
+        self.assertEqual(len(points), (1 + 3 * 2) * 4)
+        for row, (id, point) in zip(study.rows, points):
+            self.assertEqual((row["id"], row["n"], row["relMSE"], row["variance"]),
+                             (id, point["n"], point["metrics"]["relMSE"], point["variance"]))
+        self.assertEqual(study.rows[-1]["normal"], "off")
+        self.assertTrue(math.isnan(study.rows[-1]["slope_relMSE"]))  # there is no next point
+
+    def test_converge_counts_the_time_of_the_renders(self) -> None:
+        with open(self.paths[1] + ".json", encoding="utf-8") as file:
+            figures = json.load(file)
+        study = psf.converge(self.paths, self.reference, passes=4, r0="4px",
+                             renders=[self.paths[0] + ".json", figures])
+        self.assertEqual(study["n"], [1, 2, 4])
+        self.assertEqual([gain["n"] for gain in study["speedups"]], [1, 2, 4])
+        with self.assertRaisesRegex(psf.Error, "render_json: has no number 'passes'"):
+            psf.converge(self.paths, self.reference, r0="4px", renders=[{"seconds": 1}])
+
+    def test_explain_says_what_the_command_says(self) -> None:
+        dump = psf.open(self.paths[0])
+        said = run("psf", "explain", self.paths[0], "--pixel", "3,20", "--visibility=off",
+                   "--json", self.file("c.json"), "--ply", self.file("c.ply"))
+        explained = dump.explain((3, 20), visibility=None)
+        self.assertEqual(str(explained), said)
+        for end in ("json", "ply"):
+            explained.save(self.file("p." + end))
+            self.assertEqual(content(self.file("p." + end)), content(self.file("c." + end)))
+        with open(self.file("c.json"), encoding="utf-8") as file:
+            self.assertEqual(dict(explained), json.load(file))
+        said = run("psf", "explain", self.paths[0], "--path", "77", "--all", "--passes", "0:4")
+        self.assertEqual(dump.explain(path=77, passes=4).text(None), said)
+
+    def test_a_sweep_has_the_order_of_the_command(self) -> None:
+        dump = psf.open(self.paths[0])
+        run("psf", "sweep", self.paths[0], "--reference", self.reference, "--normal", "0.9,off",
+            "--r0", "2px,4px", "-o", self.file("sweep"), "--quiet")
+        with open(self.file("sweep/sweep.json"), encoding="utf-8") as file:
+            expected = json.load(file)["rows"]
+        rows = dump.sweep(self.reference, r0=["2px", "4px"], normal=[0.9, None])
+        self.assertEqual([(row["r0"], row["normal"], row["relMSE"], row["neighbors"])
+                          for row in rows],
+                         [(row["parameters"]["r0"], row["parameters"]["normal"],
+                           row["metrics"]["relMSE"], row["neighbors"]) for row in expected])
+
+    def test_mistakes_are_one_line(self) -> None:
+        dump = psf.open(self.paths[0])
+        for call, code, text in (
+                (lambda: dump.tune(r0="4px,,8px"), 2, "r0: '4px,,8px' has an empty value"),
+                (lambda: dump.tune(radius=1), 2, "there is no parameter 'radius'"),
+                (lambda: dump.tune(block="all"), 2, "block"),
+                (lambda: dump.explain((24, 0)), 2, "24"),
+                (lambda: dump.explain(path=1 << 40), 2, "path"),
+                (lambda: dump.explain((0, 0)).save(self.file("a.txt")), 2, ".json or .ply"),
+                (lambda: psf.converge([], self.reference), 2, "dumps"),
+                (lambda: psf.converge(self.paths[:1] * 2, self.reference), 3, "has the seed 0"),
+                (lambda: psf.converge(self.paths, self.reference, passes=99), 2, "passes")):
+            with self.assertRaises(psf.Error) as raised:
+                call()
+            self.assertEqual(raised.exception.code, code, raised.exception)
+            self.assertIn(text, str(raised.exception))
+            self.assertNotIn("\n", str(raised.exception))
+            self.assertNotIn("`", str(raised.exception))
+        with self.assertRaisesRegex(ValueError, "r0: an empty list"):
+            dump.tune(r0=[])
+        for wrong in ({}, {"pixel": (0, 0), "path": 1}):
+            with self.assertRaises(TypeError):
+                dump.explain(**wrong)
+        with self.assertRaisesRegex(KeyError, "has no camera nobody"):
+            dump.tune(camera="nobody")
+
+    def test_what_a_dump_lacks_is_said(self) -> None:
+        run("psf", "cat", self.paths[0], "-o", self.file("thin.pvb"), "--drop", "visibility")
+        dump = psf.open(self.file("thin.pvb"))
+        for call in (lambda: dump.tune(r0="4px"), lambda: dump.explain((3, 20)),
+                     lambda: psf.converge([dump], self.reference, r0="4px")):
+            with warnings.catch_warnings(record=True) as said:
+                warnings.simplefilter("always")
+                call()
+            self.assertEqual(len(said), 1)
+            self.assertIn("has no channel visibility", str(said[0].message))
+        self.assertEqual(dump.explain((3, 20))["parameters"]["visibility"], "off")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=["studies_test"])
