@@ -1,9 +1,12 @@
-// The subcommands of psf-bench. One file each.
+// The command line of psf-bench. Each function but the first adds a verb, which has a file of its
+// name.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 namespace psf::bench {
+
+void declare_psf_bench(CLI::App& app);  // all of it
 
 void add_files(CLI::App& app);
 void add_filter(CLI::App& app);

@@ -127,12 +127,11 @@ void run(const FilesOptions& options) {
 void add_files(CLI::App& app) {
   auto options = std::make_shared<FilesOptions>();
   CLI::App* command = app.add_subcommand(
-      "files",
-      "Measure reading, writing and opening path-vertex buffers, files in the page cache.");
+      "files", "measure reading, writing and opening path-vertex buffers, files in the page cache");
   command
-      ->add_option("input", options->input,
-                   "path-vertex buffer (.pvb) to copy and measure; made-up records unless given")
-      ->type_name("FILE");
+      ->add_option("IN", options->input,
+                   "path-vertex buffer to copy and measure; made-up records unless given")
+      ->type_name("FILE.pvb");
   command->add_option("--records", options->records, "about so many records at most")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 32))
       ->capture_default_str();

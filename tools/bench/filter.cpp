@@ -228,11 +228,10 @@ void run(const FilterOptions& options) {
 void add_filter(CLI::App& app) {
   auto options = std::make_shared<FilterOptions>();
   CLI::App* command = app.add_subcommand(
-      "filter", "Measure the filter against plain FLANN on the same records, by neighbours.");
+      "filter", "measure the filter against plain FLANN on the same records, by neighbours");
   command
-      ->add_option("input", options->input,
-                   "path-vertex buffer (.pvb) to filter; a made-up box unless given")
-      ->type_name("FILE");
+      ->add_option("IN", options->input, "path-vertex buffer to filter; a made-up box unless given")
+      ->type_name("FILE.pvb");
   command->add_option("--records", options->records, "in the block, of a file at most")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 26))
       ->capture_default_str();

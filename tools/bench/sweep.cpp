@@ -104,8 +104,8 @@ void run(const SweepOptions& options) {
 
 void add_sweep(CLI::App& app) {
   auto options = std::make_shared<SweepOptions>();
-  CLI::App* command =
-      app.add_subcommand("sweep", "64 pairs of r0 and delta against one run at the largest radius");
+  CLI::App* command = app.add_subcommand(
+      "sweep", "measure 64 pairs of r0 and delta against one run at the largest radius");
   command->add_option("IN", options->input, "path-vertex buffer")
       ->required()
       ->type_name("FILE.pvb");

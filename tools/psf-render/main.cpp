@@ -56,14 +56,9 @@ void run(RenderOptions& options) {
 }  // namespace psf::tools
 
 int main(int argc, char** argv) {
-  CLI::App app(
-      "Renders a scene and writes one record per light transport path to a path-vertex buffer,\n"
-      "which psf filters.\n",
-      "psf-render");
+  CLI::App app;
   psf::tools::RenderOptions options;
-  psf::tools::add_render_options(app, options);
-  psf::tools::set_example(app,
-                          "psf-render sample_data/cornell.json -o cornell.pvb --image cornell.png");
+  psf::tools::declare_psf_render(app, options);
   app.callback([&options] { psf::tools::run(options); });
   return psf::tools::run_tool(app, argc, argv);
 }

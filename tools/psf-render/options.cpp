@@ -14,9 +14,9 @@ namespace {
 
 void add_outputs(CLI::App& app, render::Job& job) {
   constexpr auto kGroup = "Output";
-  app.add_option("SCENE", job.scene, "scene file: .json of ours, .obj, .gltf or .glb")
+  app.add_option("SCENE", job.scene, "scene, .json of ours or a mesh")
       ->required()
-      ->type_name("");
+      ->type_name("FILE.json|.obj|.gltf|.glb");
   app.add_option("-o,--output", job.output, "path-vertex buffer to write")
       ->type_name("OUT.pvb")
       ->group(kGroup);
@@ -27,7 +27,7 @@ void add_outputs(CLI::App& app, render::Job& job) {
   app.add_option("--image", job.images,
                  "unfiltered picture, .exr or .png; may be given again; with several cameras each "
                  "adds its name")
-      ->type_name("FILE")
+      ->type_name("FILE.exr|.png")
       ->allow_extra_args(false)
       ->group(kGroup);
 }
@@ -57,7 +57,12 @@ void add_settings(CLI::App& app, render::Job& job) {
 
 }  // namespace
 
-void add_render_options(CLI::App& app, RenderOptions& options) {
+void declare_psf_render(CLI::App& app, RenderOptions& options) {
+  app.name("psf-render");
+  app.description(
+      "Renders a scene and writes one record per light transport path to a path-vertex buffer,\n"
+      "which psf filters.\n");
+  set_example(app, "psf-render sample_data/cornell.json -o cornell.pvb --image cornell.png");
   // What every program has comes last: the page begins with what this one is for.
   app.set_help_flag();
   add_outputs(app, options.job);

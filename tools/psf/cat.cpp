@@ -76,10 +76,10 @@ void run(const CatOptions& options) {
 void add_cat(CLI::App& app) {
   auto options = std::make_shared<CatOptions>();
   CLI::App* command = app.add_subcommand(
-      "cat", "Join dumps of the same scene, one behind the other, and change how they are stored.");
+      "cat", "join dumps of the same scene, one behind the other, and change how they are stored");
   command->add_option("IN", options->inputs, "path-vertex buffers, in the order of their passes")
       ->required()
-      ->type_name("FILE.pvb ...");
+      ->type_name("FILE.pvb");
   command->add_option("-o,--output", options->output, "path-vertex buffer to write")
       ->required()
       ->type_name("OUT.pvb");

@@ -18,6 +18,7 @@
 #include "core/parallel.h"
 #include "film/image.h"
 #include "film/picture.h"
+#include "metric_option.h"
 #include "metrics/error_picture.h"
 #include "metrics/reference.h"
 #include "notes.h"
@@ -178,9 +179,12 @@ void add_compare(CLI::App& app) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App* command =
       app.add_subcommand("compare", "print the error of a picture against a reference");
-  command->add_option("PICTURE", options->picture, "EXR picture")->required();
+  command->add_option("PICTURE", options->picture, "EXR picture")
+      ->required()
+      ->type_name("FILE.exr");
   command->add_option("REFERENCE", options->reference, "EXR picture taken as the truth")
-      ->required();
+      ->required()
+      ->type_name("FILE.exr");
   command
       ->add_option("--layer", options->layer,
                    "compare this layer of PICTURE, for example unfiltered-input; the colours at "
@@ -188,12 +192,8 @@ void add_compare(CLI::App& app) {
       ->type_name("NAME");
   command->add_option("--reference-layer", options->reference_layer, "the same of REFERENCE")
       ->type_name("NAME");
-  command
-      ->add_option("--metric", options->metric,
-                   "relMSE, MSE, SMAPE, MAPE, PSNR, SSIM or FLIP: printed first, bounded by --max "
-                   "or --min, shown by --error")
-      ->type_name("NAME")
-      ->capture_default_str();
+  add_metric(*command, options->metric,
+             "printed first, bounded by --max or --min, shown by --error");
   command->add_option("--max", options->max, "exit with 1 where the metric is above this")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--min", options->min,
@@ -229,7 +229,7 @@ void add_compare(CLI::App& app) {
       ->add_option("--error", options->error_pictures,
                    "write the metric of every pixel: .exr as values, .png in false colour, cyan "
                    "where not finite; repeatable")
-      ->type_name("FILE")
+      ->type_name("FILE.exr|.png")
       ->expected(1)
       ->take_all();
   command

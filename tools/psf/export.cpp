@@ -142,7 +142,7 @@ void add_export(CLI::App& app) {
       ->add_option("-o,--output", options.output,
                    "a folder (an .npy for each channel), or a name that ends in .ply or .csv")
       ->required()
-      ->type_name("NAME");
+      ->type_name("DIR|FILE.ply|.csv");
   command->add_option("--format", options.format, "the format, whatever the name")
       ->check(CLI::IsMember({"npy", "ply", "csv"}));
   command

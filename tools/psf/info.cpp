@@ -277,10 +277,10 @@ void run(const InfoOptions& options) {
 void add_info(CLI::App& app) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* command = app.add_subcommand(
-      "info", "Show what a path-vertex buffer holds: channels, cameras, passes, sizes, metadata.");
-  command->add_option("input", options->input, "path-vertex buffer (.pvb)")
+      "info", "show what a path-vertex buffer holds: channels, cameras, passes, sizes, metadata");
+  command->add_option("IN", options->input, "path-vertex buffer")
       ->required()
-      ->type_name("FILE");
+      ->type_name("FILE.pvb");
   command->add_flag("--stats", options->statistics,
                     "also smallest, largest and mean value of each channel, how many are not "
                     "finite, and u's share of the noise; reads the whole file");

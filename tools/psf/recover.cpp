@@ -85,8 +85,8 @@ void add_recover(CLI::App& app) {
   auto verb = std::make_shared<RecoverVerb>();
   CLI::App* command = app.add_subcommand(
       "recover",
-      "Save what is whole in a damaged path-vertex buffer.\nExit code 0: nothing is "
-      "lost, 1: saved with losses, 3: nothing can be saved.");
+      "save what is whole in a damaged path-vertex buffer; exit code 0: nothing is lost, 1: saved "
+      "with losses, 3: nothing can be saved");
   command->add_option("IN", verb->input, "damaged path-vertex buffer")
       ->required()
       ->type_name("FILE.pvb");

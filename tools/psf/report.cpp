@@ -80,7 +80,8 @@ void add_report(CLI::App& app) {
   command
       ->add_option("DIR", options->folders,
                    "folders that psf sweep or psf converge wrote, or a folder of such")
-      ->required();
+      ->required()
+      ->type_name("DIR");
   command->add_option("-o,--output", options->output, "the page")
       ->required()
       ->type_name("REPORT.html");

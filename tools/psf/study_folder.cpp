@@ -11,6 +11,7 @@
 #include "film/image.h"
 #include "film/picture.h"
 #include "filter/parameters/text.h"
+#include "metric_option.h"
 #include "notes.h"
 #include "pass_range.h"
 #include "version.h"
@@ -32,7 +33,7 @@ void add_study_options(CLI::App& command, StudyOptions& options, bool required) 
   command.add_option("--passes", options.passes, kPassesHelp)->type_name("FIRST:LAST");
   command.add_option("--camera", options.camera, "which camera, where the dump has several")
       ->type_name("NAME");
-  command.add_option("--metric", options.metric, "orders what is printed")->capture_default_str();
+  add_metric(command, options.metric, "orders what is printed");
   command
       .add_option("--epsilon", options.metrics.epsilon,
                   "of the relative metrics: guards dark places")

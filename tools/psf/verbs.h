@@ -1,9 +1,11 @@
-// The verbs of psf. Each function adds a subcommand; each verb has a file.
+// The command line of psf. Each function but the first adds a verb, which has a file of its name.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 namespace psf::tools {
+
+void declare_psf(CLI::App& app);  // all of it
 
 void add_cat(CLI::App& app);
 void add_compare(CLI::App& app);

@@ -77,10 +77,10 @@ void run(const VerifyOptions& options) {
 void add_verify(CLI::App& app) {
   auto options = std::make_shared<VerifyOptions>();
   CLI::App* command =
-      app.add_subcommand("verify", "Check every frame and checksum of a path-vertex buffer.");
-  command->add_option("input", options->input, "path-vertex buffer (.pvb)")
+      app.add_subcommand("verify", "check every frame and checksum of a path-vertex buffer");
+  command->add_option("IN", options->input, "path-vertex buffer")
       ->required()
-      ->type_name("FILE");
+      ->type_name("FILE.pvb");
   add_common(*command, options->common);
   set_example(*command, "psf verify scene.pvb");
   command->callback([options] { run(*options); });
