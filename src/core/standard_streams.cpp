@@ -26,9 +26,9 @@ void flush_standard_output() {
   const bool failed_before = std::ferror(stdout) != 0;
   if (std::fflush(stdout) == 0 && !failed_before) return;
   // What failed while it was printed is tried no more: a byte more tells why.
-  if (errno == 0) static_cast<void>(::write(STDOUT_FILENO, "\n", 1));
+  const bool told = errno != 0 || ::write(STDOUT_FILENO, "\n", 1) != 1;
   throw Error(ErrorCode::io, std::string("standard output: ") +
-                                 (errno == 0 ? "cannot write" : std::strerror(errno)));
+                                 (told && errno != 0 ? std::strerror(errno) : "cannot write"));
 }
 
 void say(std::string_view text) noexcept {
