@@ -4,29 +4,43 @@
 // nothing, and knows nothing but the format (README.md beside it is the specification). It writes
 // and reads raw columns; `psf cat --codec zstd` makes a file smaller afterwards.
 //
-// In ONE source file of yours, above every other #include:
+// In ONE source file of yours, above every other `#include`:
 //
-//   #define PVB_IMPLEMENTATION
-//   #include "pvb.h"
+//     #define PVB_IMPLEMENTATION
+//     #include "pvb.h"
 //
 // Everywhere else include it without the definition. A renderer then writes, in C or C++:
 //
-//   struct record { float position[3], throughput[3], contribution[3], distance; uint32_t pixel; };
-//   const pvb_channel channels[] = {PVB_POSITION, PVB_THROUGHPUT, PVB_CONTRIBUTION, PVB_DISTANCE,
-//                                   PVB_PIXEL};
-//   pvb_file *file = pvb_create("out.pvb", channels, 5,
-//       "{\"enumeration\":\"pixel\",\"cameras\":[{\"width\":640,\"height\":480,"
-//       "\"angle_per_pixel\":0.0015}]}", NULL);
-//   for (int pass = 0; pass < 16; ++pass) {
-//     struct record *r = trace_pass(pass);  // one record per path, in the order of the paths
-//     const pvb_array arrays[] = {PVB_FIELD(r, position), PVB_FIELD(r, throughput),
-//                                 PVB_FIELD(r, contribution), PVB_FIELD(r, distance),
-//                                 PVB_FIELD(r, pixel)};
-//     pvb_append(file, 640 * 480, arrays);
-//     pvb_commit(file, NULL, 0);  // from here on this pass survives a kill
-//   }
-//   if (pvb_close(file) != 0) fprintf(stderr, "%s\n", pvb_error(file));
-//   pvb_free(file);
+//     struct record { float position[3], throughput[3], contribution[3], distance; uint32_t pixel; };
+//     const pvb_channel channels[] = {PVB_POSITION, PVB_THROUGHPUT, PVB_CONTRIBUTION, PVB_DISTANCE,
+//                                     PVB_PIXEL};
+//     pvb_file *file = pvb_create("out.pvb", channels, 5,
+//         "{\"enumeration\":\"pixel\",\"cameras\":[{\"width\":640,\"height\":480,"
+//         "\"angle_per_pixel\":0.0015}]}", NULL);
+//     for (int pass = 0; pass < 16; ++pass) {
+//       struct record *r = trace_pass(pass);  // one record per path, in the order of the paths
+//       const pvb_array arrays[] = {PVB_FIELD(r, position), PVB_FIELD(r, throughput),
+//                                   PVB_FIELD(r, contribution), PVB_FIELD(r, distance),
+//                                   PVB_FIELD(r, pixel)};
+//       pvb_append(file, 640 * 480, arrays);
+//       pvb_commit(file, NULL, 0);  // from here on this pass survives a kill
+//     }
+//     if (pvb_close(file) != 0) fprintf(stderr, "%s\n", pvb_error(file));
+//     pvb_free(file);
+//
+// The values of a path, in short; README.md, "From what a renderer has", explains them in full and
+// has an example with numbers:
+//
+// - unfiltered + throughput x contribution is the radiance that the path brings to its one pixel,
+//   with weight 1. Reconstruction filters that splat a path into several pixels have no place here:
+//   write the pixel that the camera ray goes through.
+// - throughput: product of f |cos| / pdf over the vertices before x_i, mirrors and glass, over the
+//   probability of each choice there; contribution: what x_i scatters, direct and indirect, without
+//   its emission, which goes to unfiltered, times throughput.
+// - A Russian roulette's weight, 1 / probability, belongs to what comes after it: to throughput
+//   where it was played before x_i, to contribution from x_i on.
+// - visibility: bit l mod 32 is set where the shadow ray from x_i to the sampled point of light l
+//   met nothing. It says which lights are seen, not how much they add.
 //
 // sphere.c beside it is a whole renderer that does so, and resumes.
 //
@@ -40,9 +54,9 @@
 #ifndef PVB_H_INCLUDED
 #define PVB_H_INCLUDED
 
-// The features of the system that the implementation needs. The definitions work only above the
-// first system header, hence "above every other #include".
 #ifdef PVB_IMPLEMENTATION
+// The features of the system that the implementation needs. The definitions work only above the
+// first system header, hence "above every other `#include`".
 #ifndef _POSIX_C_SOURCE
 #define _POSIX_C_SOURCE 200809L
 #endif
@@ -69,6 +83,8 @@ enum { PVB_U8 = 1, PVB_U16, PVB_U32, PVB_U64, PVB_F16, PVB_F32, PVB_F64 };
 // PVB_OCTAHEDRAL: a unit vector as PVB_U16 x 2, coded by the caller as the specification says.
 enum { PVB_PLAIN = 0, PVB_OCTAHEDRAL = 1 };
 
+// A channel: its name, and what a record holds of it. Those of version 1 have definitions below; the
+// first five are required. README.md, "Channels", has the exact meaning of each.
 typedef struct pvb_channel {
   const char* name;  // 1 to 56 characters '!' to '~', unique in the file
   int type;          // PVB_U8 ... PVB_F64
@@ -76,40 +92,26 @@ typedef struct pvb_channel {
   int encoding;      // PVB_PLAIN or PVB_OCTAHEDRAL
 } pvb_channel;
 
-// The channels of version 1. The first five are required. Meaning and units: README.md, "Channels".
 // clang-format off
-#define PVB_POSITION {"position", PVB_F32, 3, PVB_PLAIN}
-#define PVB_THROUGHPUT {"throughput", PVB_F32, 3, PVB_PLAIN}
-#define PVB_CONTRIBUTION {"contribution", PVB_F32, 3, PVB_PLAIN}
-#define PVB_DISTANCE {"distance", PVB_F32, 1, PVB_PLAIN}
-#define PVB_PIXEL {"pixel", PVB_U32, 1, PVB_PLAIN}
-#define PVB_UNFILTERED {"unfiltered", PVB_F32, 3, PVB_PLAIN}
-#define PVB_FLAGS {"flags", PVB_U8, 1, PVB_PLAIN}
-#define PVB_NORMAL {"normal", PVB_F32, 3, PVB_PLAIN}
-#define PVB_REFLECTANCE {"reflectance", PVB_F32, 3, PVB_PLAIN}
-#define PVB_CAMERA {"camera", PVB_U16, 1, PVB_PLAIN}
-#define PVB_VISIBILITY {"visibility", PVB_U32, 1, PVB_PLAIN}
-#define PVB_HIT_DISTANCE {"hit_distance", PVB_F32, 1, PVB_PLAIN}
-#define PVB_DIRECTION {"direction", PVB_F32, 3, PVB_PLAIN}
-#define PVB_MATERIAL {"material", PVB_U32, 1, PVB_PLAIN}
-#define PVB_ROUGHNESS {"roughness", PVB_F32, 1, PVB_PLAIN}
+#define PVB_POSITION {"position", PVB_F32, 3, PVB_PLAIN}            // x_i, world units
+#define PVB_THROUGHPUT {"throughput", PVB_F32, 3, PVB_PLAIN}        // alpha_i
+#define PVB_CONTRIBUTION {"contribution", PVB_F32, 3, PVB_PLAIN}    // c_i, radiance
+#define PVB_DISTANCE {"distance", PVB_F32, 1, PVB_PLAIN}            // d_i, world units
+#define PVB_PIXEL {"pixel", PVB_U32, 1, PVB_PLAIN}                  // y * width + x
+#define PVB_UNFILTERED {"unfiltered", PVB_F32, 3, PVB_PLAIN}        // u_i, radiance
+#define PVB_FLAGS {"flags", PVB_U8, 1, PVB_PLAIN}                   // its bits are below
+#define PVB_NORMAL {"normal", PVB_F32, 3, PVB_PLAIN}                // unit normal at x_i
+#define PVB_REFLECTANCE {"reflectance", PVB_F32, 3, PVB_PLAIN}      // albedo at x_i
+#define PVB_CAMERA {"camera", PVB_U16, 1, PVB_PLAIN}                // index in the metadata
+#define PVB_VISIBILITY {"visibility", PVB_U32, 1, PVB_PLAIN}        // a bit a light
+#define PVB_HIT_DISTANCE {"hit_distance", PVB_F32, 1, PVB_PLAIN}    // h_i, world units
+#define PVB_DIRECTION {"direction", PVB_F32, 3, PVB_PLAIN}          // unit, toward the camera
+#define PVB_MATERIAL {"material", PVB_U32, 1, PVB_PLAIN}            // a number a material
+#define PVB_ROUGHNESS {"roughness", PVB_F32, 1, PVB_PLAIN}          // in [0, 1]
 // clang-format on
 
 // Bits of the channel `flags`.
 enum { PVB_HAS_VERTEX = 1, PVB_IS_SHADED = 2 };
-
-// The values of a path, in short; README.md, "From what a renderer has", explains them in full and
-// has an example with numbers.
-// - unfiltered + throughput x contribution is the radiance that the path brings to its one pixel,
-//   with weight 1. Reconstruction filters that splat a path into several pixels have no place here:
-//   write the pixel that the camera ray goes through.
-// - throughput: product of f |cos| / pdf over the vertices before x_i, mirrors and glass, over the
-//   probability of each choice there; contribution: what x_i scatters, direct and indirect, without
-//   its emission, which goes to unfiltered, times throughput.
-// - A Russian roulette's weight, 1 / probability, belongs to what comes after it: to throughput
-//   where it was played before x_i, to contribution from x_i on.
-// - visibility: bit l mod 32 is set where the shadow ray from x_i to the sampled point of light l
-//   met nothing. It says which lights are seen, not how much they add.
 
 // ---- Every file ---------------------------------------------------------------------------------
 
@@ -121,19 +123,23 @@ enum {
   PVB_LIMIT = 5       // a limit of the format, or of memory
 };
 
+// A file that is written or read. It is made by pvb_create(), pvb_resume() or pvb_open() and freed by
+// pvb_free().
 typedef struct pvb_file pvb_file;
 
+// What a file holds.
 typedef struct pvb_info {
-  uint64_t records, passes;     // numbers of committed records and passes
+  uint64_t records;             // committed
+  uint64_t passes;              // committed
   int closed;                   // the last commit says that the producer is done
   uint32_t chunk_capacity;      // most records per chunk
   const pvb_channel* channels;  // in the order of the file
-  size_t channel_count;
-  const char* metadata;  // JSON text, ends with a 0
-  size_t metadata_size;  // without the final 0
-  const void* state;     // resume state of the last commit; NULL where its checksum is wrong
-  size_t state_size;
-  uint64_t uncommitted;  // bytes behind the last commit on opening; normal after a kill
+  size_t channel_count;         // number of channels
+  const char* metadata;         // JSON text, ends with a 0
+  size_t metadata_size;         // bytes, without the final 0
+  const void* state;            // resume state of the last commit; NULL where its checksum is wrong
+  size_t state_size;            // bytes
+  uint64_t uncommitted;         // bytes behind the last commit on opening; normal after a kill
 } pvb_info;
 
 // The present contents of the file. Valid until pvb_free(), `state` until the next pvb_commit().
@@ -150,6 +156,7 @@ void pvb_free(pvb_file* file);
 
 // ---- Writing ------------------------------------------------------------------------------------
 
+// How a file is written; all 0 is a good choice.
 typedef struct pvb_options {
   uint32_t chunk_capacity;    // most records per chunk, 1 to 2^24; 0: 65536, or that of the file
   int no_sync;                // do not wait for the disk: a loss of power may lose commits
@@ -159,11 +166,11 @@ typedef struct pvb_options {
 // The values of one channel: record i at `data` + i * `stride` bytes, any alignment. A stride of 0
 // gives every record the same value.
 typedef struct pvb_array {
-  const void* data;
-  size_t stride;
+  const void* data;  // the value of record 0
+  size_t stride;     // bytes from one record to the next
 } pvb_array;
 
-// The member of an array of structs: const pvb_array a[] = {PVB_FIELD(records, position), ...};
+// A member of an array of structs: `const pvb_array a[] = {PVB_FIELD(records, position), ...};`
 // clang-format off
 #define PVB_FIELD(records, member) {&(records)->member, sizeof *(records)}
 // clang-format on

@@ -6,7 +6,7 @@
 
 namespace psf {
 
-// Exit codes of every tool.
+// What kind of thing went wrong; the values are the exit codes of every tool.
 enum class ErrorCode : int {
   comparison = 1,    // a comparison or verification failed
   usage = 2,         // a mistake in the command line
@@ -16,13 +16,14 @@ enum class ErrorCode : int {
   interrupted = 130  // ^C
 };
 
-// Thrown for bad input and failed I/O, caught once, in main. The message is one line that names the
-// file, the place in it and the remedy: "room.json: /materials/2/roughness: expected a number in
-// [0, 1]".
-// Visible outside libpsf, where it is caught.
+// The one exception of the project, for bad input and failed I/O. The message is one line that names
+// the file, the place in it and the remedy: "room.json: /materials/2/roughness: expected a number in
+// [0, 1]". Written Error{io} where only the kind matters.
 class [[gnu::visibility("default")]] Error : public std::runtime_error {
  public:
+  // `message`: one line, which what() returns.
   Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  // The kind, and the exit code of a tool that ends with it.
   [[nodiscard]] ErrorCode code() const noexcept {
     return code_;
   }

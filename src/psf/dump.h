@@ -22,46 +22,56 @@
 
 namespace psf {
 
+// A channel of a dump: one or more values a record.
 struct Channel {
-  std::string name;
-  std::string type;  // "u8", "u16", "u32", "u64", "f16", "f32", "f64"
-  std::size_t components = 1;
-  bool octahedral = false;  // unit vectors in two components, read as three floats
+  std::string name;            // 1 to 56 visible ASCII characters, unique in the dump
+  std::string type;            // "u8", "u16", "u32", "u64", "f16", "f32", "f64"
+  std::size_t components = 1;  // values a record, 1 to 16
+  bool octahedral = false;     // unit vectors in two components, read as three floats
 };
 
+// How a dump is filtered, beside the parameters of the filter.
 struct FilterOptions {
-  Passes passes;
+  Passes passes;                            // the passes that are filtered
   bool layers = true;                       // all layers of psf filter, not the colours alone
-  std::optional<std::uint64_t> max_memory;  // bytes
-  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};  // paths
+  std::optional<std::uint64_t> max_memory;  // bytes; where they do not suffice: Error{limit}
+  // Called now and then by the thread that filters, with numbers of paths.
+  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};
 };
 
+// The pictures, and what there was to filter; numbers of records are those of all blocks together.
 struct FilterResult {
   std::vector<Picture> pictures;   // one a camera
   std::vector<std::string> notes;  // what was switched off, and why
-  std::uint64_t passes = 0, blocks = 0;
-  std::uint64_t sources = 0, queries = 0, orphans = 0, left_out = 0;  // records of all blocks
-  double neighbors = 0;                                               // mean over the queries
+  std::uint64_t passes = 0;        // passes that were filtered
+  std::uint64_t blocks = 0;        // blocks that they fell into
+  std::uint64_t sources = 0;       // records that could be averaged
+  std::uint64_t queries = 0;       // records that got an average
+  std::uint64_t orphans = 0;       // queries without a source in reach, which took the nearest
+  std::uint64_t left_out = 0;  // records with values that are not finite, which are in no picture
+  double neighbors = 0;        // records averaged, mean over the queries
 };
 
+// A path-vertex buffer that is read. A value that moves and owns the open file; a moved-from one may
+// only be destroyed or assigned to. `refresh()` aside, several threads may call it at once.
 class PSF_API Dump {
  public:
-  // Throws Error{io} where the file cannot be opened, Error{bad_input} where it is no path-vertex
-  // buffer, is damaged, or has no committed pass.
+  // Opens a file up to its last commit; it may still be growing. Throws Error{io} where it cannot be
+  // opened, Error{bad_input} where it is no path-vertex buffer, is damaged, or has no committed pass.
   explicit Dump(const std::string& path);
-  ~Dump();
-  Dump(Dump&&) noexcept;
-  Dump& operator=(Dump&&) noexcept;
+  ~Dump();                           // Closes the file.
+  Dump(Dump&&) noexcept;             // Takes over the open file.
+  Dump& operator=(Dump&&) noexcept;  // Closes the own file and takes over the other.
 
-  [[nodiscard]] const std::string& path() const;
-  [[nodiscard]] std::uint64_t records() const;
-  [[nodiscard]] std::uint64_t passes() const;
-  [[nodiscard]] bool closed() const;           // its producer has finished it
-  [[nodiscard]] std::string metadata() const;  // JSON, as in the file
-  [[nodiscard]] const std::vector<Channel>& channels() const;
-  [[nodiscard]] const std::vector<Camera>& cameras() const;
+  [[nodiscard]] const std::string& path() const;  // as it was opened
+  [[nodiscard]] std::uint64_t records() const;    // committed when the dump was opened or refreshed
+  [[nodiscard]] std::uint64_t passes() const;     // committed likewise
+  [[nodiscard]] bool closed() const;              // its producer has finished it
+  [[nodiscard]] std::string metadata() const;     // JSON, as in the file
+  [[nodiscard]] const std::vector<Channel>& channels() const;  // in the order of the file
+  [[nodiscard]] const std::vector<Camera>& cameras() const;    // in the order of the file
   // Takes in what was committed since; returns whether there was anything. Throws Error{usage} where
-  // another call is at work on the dump. All other calls may be made from several threads at once.
+  // another call is at work on the dump.
   bool refresh();
 
   // Records [first, first + count) of a channel as stored: `out` has count * components values.
@@ -101,34 +111,38 @@ class PSF_API Dump {
   std::shared_ptr<State> state_;
 };
 
+// How a dump is written.
 struct WriterOptions {
   bool compress = true;  // zstd
   // More metadata: a JSON object with keys of formats/README.md, "Metadata", or of your own.
   std::string metadata;
 };
 
-// Writes a dump; calls may come from several threads, one after the other. The file appears under its name with its first pass, whole; what is not committed
-// is not in it.
+// Writes a dump. The file appears under its name with its first pass, whole; what is not committed is
+// not in it. Calls may come from several threads, one after the other.
 class PSF_API DumpWriter {
  public:
-  // `cameras`: at least one; they stand for those that the metadata may name, of which those of the
+  // Starts a file. `cameras`: at least one; they stand for those that the metadata may name, of which those of the
   // same name keep their matrices. Throws Error{io}, Error{bad_input} for channels, cameras or
   // metadata that break the rules of the format.
   DumpWriter(const std::string& path, std::span<const Camera> cameras,
              std::span<const Channel> channels, const WriterOptions& options = {});
-  ~DumpWriter();
-  DumpWriter(DumpWriter&&) noexcept;
-  DumpWriter& operator=(DumpWriter&&) noexcept;
+  ~DumpWriter();                                 // Leaves what is committed, or no file.
+  DumpWriter(DumpWriter&&) noexcept;             // Takes over the file that is written.
+  DumpWriter& operator=(DumpWriter&&) noexcept;  // Ends the own file and takes over the other.
 
-  // Appends records to the current pass. columns[k]: (count, components) values of channel k.
+  // Appends records to the current pass. columns[k]: (count, components) values of channel k, which
+  // are copied. Throws Error{io}, Error{usage}.
   void append(std::size_t count, std::span<const void* const> columns);
+  // Ends the pass and writes it to the disk: it survives whatever happens after. Throws Error{io},
+  // Error{usage} where the pass has no records.
   void commit_pass();
   // Says that there is nothing to come. Throws Error{usage} where records are not committed.
   void close();
 
-  [[nodiscard]] const std::vector<Channel>& channels() const;
-  [[nodiscard]] std::uint64_t records() const;  // committed
-  [[nodiscard]] std::uint64_t passes() const;   // committed
+  [[nodiscard]] const std::vector<Channel>& channels() const;  // as given to the constructor
+  [[nodiscard]] std::uint64_t records() const;                 // committed
+  [[nodiscard]] std::uint64_t passes() const;                  // committed
 
  private:
   struct State;

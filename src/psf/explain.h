@@ -15,10 +15,12 @@
 
 namespace psf {
 
+// What of a dump is explained, beside the pixel and the parameters of the filter.
 struct ExplainOptions {
-  Passes passes;
-  std::size_t camera = 0;                                                         // the pixel's
-  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};  // paths
+  Passes passes;           // the passes whose paths are explained
+  std::size_t camera = 0;  // the pixel's
+  // Called now and then by the thread that explains, with numbers of paths.
+  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};
 };
 
 // A pixel, or a path, explained: Dump::explain(). A value, which keeps its dump open.

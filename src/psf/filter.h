@@ -13,27 +13,36 @@
 
 namespace psf {
 
+// A camera that paths were traced from.
 struct Camera {
-  std::string name;
-  std::uint32_t width = 1, height = 1;  // pixels
-  double angle_per_pixel = 0;           // radians; for radii in pixels
+  std::string name;            // in names of files where there are several
+  std::uint32_t width = 1;     // pixels
+  std::uint32_t height = 1;    // pixels
+  double angle_per_pixel = 0;  // radians; for radii in pixels
 };
 
-// Views of n records, which are one block: a record a path, in path order. Those that follow the
-// first line may be empty. What each is, and its unit, is in formats/README.md, "Channels".
+// Views of n records, which are one block: a record a path, in path order. The first four are needed,
+// the others may be empty. formats/README.md, "Channels", has the exact meaning of each.
 struct Records {
-  std::span<const float> position, throughput, contribution;  // (n, 3)
-  std::span<const std::uint32_t> pixel;                       // (n), y * width + x
+  std::span<const float> position;       // (n, 3), x_i, world units
+  std::span<const float> throughput;     // (n, 3), alpha_i
+  std::span<const float> contribution;   // (n, 3), c_i, radiance
+  std::span<const std::uint32_t> pixel;  // (n), y * width + x
 
-  std::span<const float> distance;  // (n); needed unless r0 is in world units
-  std::span<const float> unfiltered, normal, reflectance;  // (n, 3)
-  std::span<const float> direction;                        // (n, 3), unit, toward the camera
-  std::span<const float> hit_distance, roughness;          // (n)
-  std::span<const std::uint32_t> visibility, material;     // (n)
-  std::span<const std::uint16_t> camera;                   // (n); empty: the first
-  std::span<const std::uint8_t> flags;                     // (n); empty: 3, with vertex and shaded
+  std::span<const float> distance;            // (n), world units; needed unless r0 is in them too
+  std::span<const float> unfiltered;          // (n, 3), u_i, radiance
+  std::span<const float> normal;              // (n, 3), unit
+  std::span<const float> reflectance;         // (n, 3), albedo
+  std::span<const float> direction;           // (n, 3), unit, toward the camera
+  std::span<const float> hit_distance;        // (n), of the first ray from x_i, world units
+  std::span<const float> roughness;           // (n), in [0, 1]
+  std::span<const std::uint32_t> visibility;  // (n), a bit a light
+  std::span<const std::uint32_t> material;    // (n), any numbers
+  std::span<const std::uint16_t> camera;      // (n); empty: the first
+  std::span<const std::uint8_t> flags;        // (n); empty: 3, with vertex and shaded
 };
 
+// What became of n records, and the pictures of their cameras.
 struct FilteredRecords {
   std::vector<float> c_bar;              // (n, 3); 0 for a record without average
   std::vector<std::uint32_t> neighbors;  // (n); number of records averaged

@@ -25,6 +25,7 @@ class PSF_API Interruptible {
 // Every call that is at work, and every later one, throws Error{interrupted} at its next step,
 // until clear_interrupt().
 PSF_API void interrupt() noexcept;
+// Lets calls run again.
 PSF_API void clear_interrupt() noexcept;
 
 }  // namespace psf

@@ -10,8 +10,12 @@
 
 namespace psf {
 
+// A parameter as psf filter --help describes it.
 struct ParameterHelp {
-  std::string name, type, help, standard;  // "r0", "R", what it does, the default's text: "8px"
+  std::string name;      // "r0"
+  std::string type;      // stands for its value: "R"
+  std::string help;      // what it does
+  std::string standard;  // the text of its default: "8px"
 };
 
 // A value: the defaults of psf filter, and what was set. What is not set is chosen for a dump: a
@@ -24,9 +28,11 @@ class PSF_API Parameters {
   // Switches off the weights that are not set.
   Parameters& no_weights(bool off = true);
 
-  // The text of a parameter, set or not.
+  // The text of a parameter, set or not. Throws Error{usage} where there is none of this name.
   [[nodiscard]] std::string get(std::string_view name) const;
+  // What was set: names and texts.
   [[nodiscard]] const std::map<std::string, std::string>& given() const { return given_; }
+  // Whether the weights that are not set are off.
   [[nodiscard]] bool has_no_weights() const { return no_weights_; }
 
   // Every combination of lists of values, by the names of parameters, as of psf sweep: "2px,4px",
@@ -35,7 +41,7 @@ class PSF_API Parameters {
   [[nodiscard]] static std::vector<Parameters> combinations(
       const std::map<std::string, std::string>& lists, bool no_weights = false);
 
-  // Every parameter that there is.
+  // Every parameter that there is, in the order of psf filter --help.
   [[nodiscard]] static std::vector<ParameterHelp> help();
 
  private:

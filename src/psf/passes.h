@@ -6,10 +6,10 @@
 
 namespace psf {
 
-// From 0: [first, last); `last` not set: all there are.
+// Which passes, counted from 0: [first, last).
 struct Passes {
-  std::uint64_t first = 0;
-  std::optional<std::uint64_t> last = {};
+  std::uint64_t first = 0;                 // the first one
+  std::optional<std::uint64_t> last = {};  // the one behind the last; not set: all there are
 };
 
 }  // namespace psf

@@ -11,21 +11,25 @@
 
 namespace psf {
 
+// A channel of an EXR: one value a pixel.
 struct Layer {
   std::string name;           // "R", "unfiltered-input.G", "neighbors.Y"
   std::vector<float> values;  // (height, width), row 0 at the top
 };
 
+// A picture of one camera. It owns its layers and may be copied and changed.
 struct PSF_API Picture {
-  std::size_t width = 0, height = 0;  // pixels
-  std::string camera;
-  std::string file;  // that it was read from; empty where it was made
-  std::vector<Layer> layers;
-  std::vector<std::pair<std::string, std::string>> attributes;  // of its EXR
+  std::size_t width = 0;      // pixels
+  std::size_t height = 0;     // pixels
+  std::string camera;         // name; empty where there is none
+  std::string file;           // that it was read from; empty where it was made
+  std::vector<Layer> layers;  // as in its EXR
+  std::vector<std::pair<std::string, std::string>> attributes;  // of its EXR, name and text
 
   // The values of a layer. Throws Error{bad_input} where there is none of this name.
   [[nodiscard]] const std::vector<float>& layer(std::string_view name) const;
-  // The colours of the layers R, G and B behind `prefix`, (height, width, 3), linear.
+  // The colours of the layers R, G and B behind `prefix`, (height, width, 3), linear. Throws
+  // Error{bad_input} where they are not there.
   [[nodiscard]] std::vector<float> rgb(const std::string& prefix = "") const;
   // The bytes of a PNG to look at: times 2^exposure, tone-mapped; those of save() at exposure 0.
   [[nodiscard]] std::vector<unsigned char> png(float exposure = 0) const;
@@ -38,10 +42,11 @@ struct PSF_API Picture {
   [[nodiscard]] static Picture read(const std::string& path, const std::string& layer = "");
 
   // The error against a reference of the same size by a metric of metric_names(), upper or lower
-  // case, as psf compare gives it. Throws Error{usage}.
+  // case, as psf compare gives it. Throws Error{usage}, Error{bad_input} for another size.
   [[nodiscard]] double error(const Picture& reference, std::string_view metric = "relMSE") const;
 };
 
+// The metrics that error() and Dump::sweep() know.
 [[nodiscard]] PSF_API std::vector<std::string> metric_names();
 
 }  // namespace psf

@@ -24,7 +24,7 @@ using ParameterTexts = std::vector<std::pair<std::string, std::string>>;
 
 // A row of Dump::sweep().
 struct SweepRow {
-  ParameterTexts parameters;
+  ParameterTexts parameters;                           // of the row
   std::vector<std::pair<std::string, double>> errors;  // by metric
   double neighbors = 0;                                // mean over the queries
   double seconds = 0;                                  // of the traversal it shared
@@ -34,24 +34,29 @@ struct SweepRow {
 // Parameters::combinations().
 [[nodiscard]] PSF_API std::string tune_radii();
 
+// How Dump::tune() compares sets of parameters.
 struct TuneOptions {
-  Passes passes;
-  std::size_t camera = 0;
+  Passes passes;                            // the passes that are filtered
+  std::size_t camera = 0;                   // the picture's
   double epsilon = 1e-2;                    // of the relative error: guards dark places
-  std::optional<std::uint64_t> max_memory;  // bytes
-  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};  // paths
+  std::optional<std::uint64_t> max_memory;  // bytes; where they do not suffice: Error{limit}
+  // Called now and then by the thread that tunes, with numbers of paths.
+  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};
 };
 
 // One set of parameters, and estimates of relMSE and its parts for the picture of all passes.
 struct TuneRow {
-  ParameterTexts parameters;
-  double error = 0, standard_error = 0;
-  double bias_sq = 0, variance = 0;
+  ParameterTexts parameters;      // of the row
+  double error = 0;               // relMSE, estimated
+  double standard_error = 0;      // of `error`
+  double bias_sq = 0;             // the part of `error` that is bias, squared
+  double variance = 0;            // the part that is noise
   double neighbors = 0;           // mean over the queries
   double sigmas_above_least = 0;  // standard errors between this error and the least
   bool may_be_better = false;     // its error may be clearly less than that of the choice
 };
 
+// What Dump::tune() found.
 struct TuneResult {
   std::vector<TuneRow> rows;       // least error first
   Parameters best;                 // the choice, for Dump::filter(): what psf filter --tuned takes
@@ -61,31 +66,35 @@ struct TuneResult {
   std::string json;                // the bytes of psf tune --json
 };
 
+// How converge() measures.
 struct ConvergeOptions {
-  std::optional<std::uint64_t> passes;  // the first so many; not set: all of the first dump
-  std::size_t camera = 0;
+  std::optional<std::uint64_t> passes;      // the first so many; not set: all of the first dump
+  std::size_t camera = 0;                   // the picture's
   double epsilon = 1e-2;                    // of the relative metrics
   bool all_metrics = false;                 // SSIM and FLIP too: slower
   bool times = true;                        // run each set once more to take its time
   std::vector<std::string> render_json;     // texts that psf-render --json wrote, for speed-ups
-  std::optional<std::uint64_t> max_memory;  // bytes
-  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};  // paths
+  std::optional<std::uint64_t> max_memory;  // bytes; where they do not suffice: Error{limit}
+  // Called now and then by the thread that works, with numbers of paths.
+  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};
 };
 
 // One set of parameters after n passes.
 struct ConvergeRow {
   std::string id;             // "unfiltered", "0001", ...
   ParameterTexts parameters;  // empty where nothing is filtered
-  std::uint64_t n = 0;
+  std::uint64_t n = 0;        // passes
   // The columns of converge.csv by name: "relMSE", "bias_sq", "variance_ci_low", "slope_variance",
   // "neighbors" and so on; NaN where there is none.
   std::vector<std::pair<std::string, double>> values;
 };
 
+// What converge() measured.
 struct ConvergeResult {
   std::vector<ConvergeRow> rows;   // unfiltered first, then the sets in their order; n ascending
   std::vector<std::string> notes;  // what was switched off, and why
-  std::string json, csv;           // the bytes of the files converge.json and converge.csv
+  std::string json;                // the bytes of the file converge.json
+  std::string csv;                 // the bytes of the file converge.csv
 };
 
 // What psf converge does, without its pictures: the errors of every set after 1, 2, 4, ... passes.
