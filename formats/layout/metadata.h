@@ -19,13 +19,13 @@ struct CameraInfo {
 };
 
 struct Metadata {
-  std::string producer;  // program and version
-  std::string scene,
-      scene_hash;          // file name without folder; hash over everything that shapes the picture
+  std::string producer;    // program and version
+  std::string scene;       // file name without folder
+  std::string scene_hash;  // over everything that shapes the picture
   std::string integrator;  // path, direct, ao, ...
   std::string sampler;     // sobol, halton, independent
-  std::string enumeration;  // "pixel" (a pass visits pixels in order) or "global" (one sequence
-                            // over the image plane)
+  // "pixel" (a pass visits pixels in order) or "global" (one sequence over the image plane).
+  std::string enumeration;
   std::uint64_t seed = 0;
   std::uint32_t block_base = 2;  // b: blocks of b^m contiguous paths are well distributed
   std::uint32_t split = 1;       // continuations averaged into each contribution

@@ -24,13 +24,12 @@ struct PixelSums {
   Colour filtered{0, 0, 0};     // [pixel]
   std::uint64_t own_paths = 0;  // number of paths that have an unfiltered radiance
   std::optional<Colour> own;    // mean of these paths' unfiltered radiance
-  double own_error = 0;         // standard error of the mean luminance of alpha_i c_i; 0 for a
-                                // single path
-  std::size_t brightest = 0;    // place in ::paths of the path with most unfiltered luminance
-  double brightest_share = 0;   // share of that path in `own`
-  Colour baseline{0, 0, 0};     // o = sum alpha_i c_i / sum alpha_i over its own sources
-  Colour difference{0, 0, 0};   // sum alpha_i (c_bar_i - o) / N; it is filtered - own where every
-                                // path has a contribution
+  double own_error = 0;        // standard error of the mean luminance of alpha_i c_i; 0 of one path
+  std::size_t brightest = 0;   // place in ::paths of the path with most unfiltered luminance
+  double brightest_share = 0;  // share of that path in `own`
+  Colour baseline{0, 0, 0};    // o = sum alpha_i c_i / sum alpha_i over its own sources
+  // sum alpha_i (c_bar_i - o) / N; it is filtered - own where every path has a contribution.
+  Colour difference{0, 0, 0};
 };
 
 // A source j, summed over all paths that average it.

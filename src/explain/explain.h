@@ -70,8 +70,8 @@ struct ExplainResult {
   std::vector<std::uint64_t> record;  // number of each vertex in the dump
   std::vector<std::uint32_t> pass;
   std::vector<bool> is_source;
-  std::vector<Rgb>
-      value;  // the value averaged: c_j, c_j / rho_j, or the result of the previous iteration
+  // The value averaged: c_j, c_j / rho_j, or the result of the previous iteration.
+  std::vector<Rgb> value;
   std::vector<ExplainedPath> paths;  // in the order of the dump
   std::vector<ExplainedPair> pairs;  // by path, then by record
 };

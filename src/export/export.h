@@ -47,7 +47,7 @@ using ExportProgress = std::function<void(std::uint64_t done, std::uint64_t tota
 
 struct PlyOptions {
   // A channel, `radiance` (the path's unfiltered + throughput x contribution), or `none`.
-  // export_colour.h says how a channel becomes a colour.
+  // colour.h says how a channel becomes a colour.
   std::string colour = "contribution";
   std::optional<float> exposure = 0.0f;  // stops; not set: the log-average luminance becomes 0.18
 };

@@ -16,8 +16,8 @@ enum class Metric : int {
   smape,    // mean of |x - r| / (|x| + |r| + epsilon), at most 1 (Vogels 2018)
   mape,     // mean of |x - r| / (|r| + epsilon)
   psnr,     // 10 log10(1 / MSE), of linear values and peak 1, in dB
-  ssim,     // structural similarity of the displayed picture, 1: equal (metric_ssim.h)
-  flip      // LDR-FLIP of the displayed picture, 0: equal, at most 1 (metric_flip.h)
+  ssim,     // structural similarity of the displayed picture, 1: equal (ssim.h)
+  flip      // LDR-FLIP of the displayed picture, 0: equal, at most 1 (flip.h)
 };
 
 inline constexpr std::size_t kMetricCount = 7;

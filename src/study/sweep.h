@@ -40,8 +40,8 @@ struct SweepRequest {
   std::function<void()> on_traversal;
   // Called once, before the first row, with the picture of the same paths without filter.
   std::function<void(const metrics::Metrics&, const std::vector<Rgb>& picture)> on_unfiltered;
-  std::function<void(std::uint64_t done, std::uint64_t total)>
-      on_progress;  // counts paths over all traversals
+  // Called now and then; counts paths over all traversals.
+  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress;
 };
 
 // Runs a sweep. Rows that differ only in r0 and delta share a traversal, as many as the memory

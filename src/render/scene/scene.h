@@ -96,8 +96,8 @@ struct Camera {
 // far from the world's origin, huge or tiny.
 struct Scene {
   std::string name;  // file name without folder
-  std::string hash;  // hexadecimal, over everything that shapes the picture (files and command-line
-                     // changes)
+  // Hexadecimal, over everything that shapes the picture: files and what the command line changes.
+  std::string hash;
   std::vector<Texture> textures;
   std::vector<Material> materials;
   std::vector<Mesh> meshes;

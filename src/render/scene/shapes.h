@@ -28,10 +28,10 @@ namespace psf::render {
                                  float to_radius, std::uint32_t segments, bool caps);
 
 struct Arch {
-  float width = 2, height = 1.5f,
-        depth = 0.5f;  // size of the panel, which is centred on x = 0 and z = 0 and begins at y = 0
-  float span = 1.6f;   // width of the opening at y = 0, at most `width`
-  float rise = 0.8f;   // height of the opening at x = 0, less than `height`
+  // Size of the panel, which is centred on x = 0 and z = 0 and begins at y = 0.
+  float width = 2, height = 1.5f, depth = 0.5f;
+  float span = 1.6f;  // width of the opening at y = 0, at most `width`
+  float rise = 0.8f;  // height of the opening at x = 0, less than `height`
   std::uint32_t segments = 24;
 };
 // A panel with an elliptic opening cut from its bottom. On its faces uv is (x, y), in scene units.
