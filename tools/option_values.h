@@ -1,5 +1,4 @@
-// Options whose text becomes a value (numbers within limits, choices), and the wrapping of help
-// texts.
+// Options whose text becomes a value (numbers within limits), and the wrapping of help texts.
 #pragma once
 
 #include <fmt/format.h>
@@ -50,28 +49,6 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, T& target, T lea
     option->default_str(fmt::format("{}", target));
   }
   return option;
-}
-
-template <class Enum>
-CLI::Option* add_choice(CLI::App& app, const std::string& name, Enum& target,
-                        const std::vector<std::pair<std::string, Enum>>& choices,
-                        const std::string& help) {
-  std::string names;
-  std::string chosen;
-  for (const auto& [choice, value] : choices) {
-    names += (names.empty() ? "" : "|") + choice;
-    if (value == target) chosen = choice;
-  }
-  return add_parsed(app, name, names, "one of " + names, help,
-                    [&target, choices](const std::string& text) {
-                      const auto found =
-                          std::find_if(choices.begin(), choices.end(),
-                                       [&](const auto& choice) { return choice.first == text; });
-                      if (found == choices.end()) return false;
-                      target = found->second;
-                      return true;
-                    })
-      ->default_str(chosen);
 }
 
 // Breaks a help text into lines that fit beside the options' names.
