@@ -173,6 +173,24 @@ void run(const CompareOptions& options) {
   judge(options, report);
 }
 
+void add_error_pictures(CLI::App& command, CompareOptions& options) {
+  command
+      .add_option("--error", options.error_pictures,
+                  "write the metric of every pixel: .exr as values, .png in false colour, cyan "
+                  "where not finite; repeatable")
+      ->type_name("FILE.exr|.png")
+      ->expected(1)
+      ->take_all();
+  command
+      .add_option("--error-max", options.error_max,
+                  "error of the brightest colour; without: what 99% of the pixels do not exceed")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--colors", options.colors, "colour map of --error")
+      ->check(CLI::IsMember(
+          std::vector<std::string>(std::begin(metrics::kColorMaps), std::end(metrics::kColorMaps))))
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void add_compare(CLI::App& app) {
@@ -225,21 +243,7 @@ void add_compare(CLI::App& app) {
                    "at 0.7 m")
       ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
-  command
-      ->add_option("--error", options->error_pictures,
-                   "write the metric of every pixel: .exr as values, .png in false colour, cyan "
-                   "where not finite; repeatable")
-      ->type_name("FILE.exr|.png")
-      ->expected(1)
-      ->take_all();
-  command
-      ->add_option("--error-max", options->error_max,
-                   "error of the brightest colour; without: what 99% of the pixels do not exceed")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--colors", options->colors, "colour map of --error")
-      ->check(CLI::IsMember(
-          std::vector<std::string>(std::begin(metrics::kColorMaps), std::end(metrics::kColorMaps))))
-      ->capture_default_str();
+  add_error_pictures(*command, *options);
   add_common(*command, options->common);
   set_example(*command, "psf compare filtered.exr reference.exr --metric FLIP --max 0.1");
   command->callback([options] { run(*options); });
