@@ -20,6 +20,10 @@ def main(path: str, reference: str, out: str) -> None:
     rows = dump.sweep(reference, r0=psf.geomspace(2, 32, 3), delta=[0.0, 0.5])
     best = min(rows, key=lambda row: float(row["relMSE"]))
     print(len(rows), best["r0"])
+    tuning = dump.tune(r0=["2px", "4px"], block="1pass", progress=False)
+    print(dump.filter(**tuning.best).attributes["psf:r0"] == tuning.best["r0"])
+    print(psf.converge([dump], reference, r0="4px", times=False).rows[0]["relMSE"] > 0)
+    print(str(dump.explain((1, 2), visibility=None)).splitlines()[0])
 
 
 if __name__ == "__main__":

@@ -279,6 +279,7 @@ class Package(unittest.TestCase):
             [sys.executable, "-B", example, self.path, self.reference, self.file("x.exr")],
             env=dict(os.environ, PYTHONPATH=PACKAGE), check=True, capture_output=True, text=True)
         self.assertIn("(100, 3) True", said.stdout)
+        self.assertEqual(said.stdout.splitlines()[-3:-1], ["True", "True"])
         run("psf", "filter", self.path, "-o", self.file("y.exr"), "--r0", "12px", "--delta",
             f"{1 / 3:.17g}", "--quiet")
         self.assertTrue(self.same_bytes(self.file("x.exr"), self.file("y.exr")))

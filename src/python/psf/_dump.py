@@ -45,12 +45,14 @@ class _Column:
 
 
 class Dump:
-    """A path-vertex buffer. ``dump["position"][a:b]`` reads these records and no others."""
+    """A path-vertex buffer. ``dump["position"][a:b]`` reads these records and no others.
+
+    ``rendered``: the figures of psf.render(), where that made the dump.
+    """
 
     def __init__(self, path: str) -> None:
         self._dump = _psf.Dump(path)
         self.rendered: dict[str, Any] | None = None
-        """The figures of psf.render(), where that made the dump."""
 
     @property
     def path(self) -> str:
@@ -153,8 +155,7 @@ class Dump:
         """What ``psf explain`` does: why a pixel of the filtered picture is what it is.
 
         ``pixel``: (x, y), (0, 0) at the top left; or one ``path``, by its number in the dump.
-        ``print(dump.explain((x, y)))`` shows the command's text, ``dump.explain((x, y))["sources"]``
-        are figures.
+        ``print()`` of what is returned shows the command's text, and ["sources"] of it are figures.
         """
         if (pixel is None) == (path is None):
             raise TypeError("explain: give a pixel (x, y) or a path")

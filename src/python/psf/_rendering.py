@@ -7,7 +7,7 @@ import os
 import shutil
 import tempfile
 import weakref
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from types import ModuleType
 from typing import Any, Union
 
@@ -36,7 +36,7 @@ def _settings(given: dict[str, Setting]) -> list[tuple[str, str]]:
     pairs = []
     for name, value in given.items():
         name = name.replace("_", "-")
-        values = [value] if isinstance(value, str) or not hasattr(value, "__iter__") else list(value)
+        values = list(value) if isinstance(value, Iterable) and not isinstance(value, str) else [value]
         if name in ("camera", "channels"):
             pairs += [(name, text(one)) for one in values]
         else:

@@ -41,14 +41,16 @@ class Figures(Mapping[str, Any]):
 
 
 class Tuning(Figures):
-    """What Dump.tune() gives."""
+    """What Dump.tune() gives: the figures of ``psf tune --json``.
+
+    ``rows``: a flat dict for each set, least error first; pandas.DataFrame() takes it.
+    ``best``: the choice, for ``dump.filter(**tuning.best)``.
+    """
 
     def __init__(self, text: str, rows: list[dict[str, Any]], best: dict[str, str]) -> None:
         super().__init__(text)
         self.rows = [with_underscores(row) for row in rows]
-        """A flat dict for each set, least error first; pandas.DataFrame() takes it."""
         self.best: dict[str, Any] = with_underscores(best)
-        """The choice: ``dump.filter(**tuning.best)``."""
 
     def save(self, path: str) -> None:
         """Writes the bytes of ``psf tune --json``; ``psf filter --tuned`` takes them."""
@@ -59,13 +61,16 @@ class Tuning(Figures):
 
 
 class Convergence(Figures):
-    """What converge() gives."""
+    """What converge() gives: the figures of converge.json.
+
+    ``rows``: a flat dict for each set and each n, with the columns of converge.csv, "unfiltered"
+    first; pandas.DataFrame() takes it.
+    """
 
     def __init__(self, text: str, csv: str, rows: list[dict[str, Any]]) -> None:
         super().__init__(text)
         self._csv = csv
         self.rows = [with_underscores(row) for row in rows]
-        """A flat dict for each set and each n, "unfiltered" first; pandas.DataFrame() takes it."""
 
     def save(self, folder: str) -> None:
         """Writes converge.json and converge.csv as ``psf converge -o`` does; ``psf report`` takes
@@ -79,7 +84,8 @@ class Convergence(Figures):
 
 
 class Explanation(Figures):
-    """What Dump.explain() gives; ``print()`` shows what ``psf explain`` prints."""
+    """What Dump.explain() gives: the figures of ``psf explain --json``; ``print()`` shows what the
+    command prints."""
 
     def __init__(self, explanation: _psf.Explanation) -> None:
         super().__init__("")
