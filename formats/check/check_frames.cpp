@@ -229,7 +229,7 @@ class FrameCheck {
 
   void add_bad_regions() {
     for (Region& region : walk_.bad) {
-      const bool commit = commit_places_.count(region.begin) > 0;
+      const bool commit = commit_places_.contains(region.begin);
       report_.faults.push_back(
           {region.begin,
            commit ? "CMIT" : "",

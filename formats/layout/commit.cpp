@@ -26,7 +26,8 @@ Section get(ByteReader& in) {
   return section;
 }
 
-void check(const Frame& frame, const Section& section, std::uint64_t most, const char* name) {
+void check_section(const Frame& frame, const Section& section, std::uint64_t most,
+                   const char* name) {
   if (section.length > most || section.offset < kPrefix + frame.directory.size() ||
       section.offset % kAlignment != 0 || section.offset > frame.prefix.length ||
       section.length > frame.prefix.length - section.offset) {
@@ -75,9 +76,9 @@ Commit decode_commit(const Frame& frame) {
   commit.head = get(in);
   commit.resume = get(in);
   in.skip(kCommitFixed - 144);
-  check(frame, commit.index, frame.prefix.length, "index");
-  check(frame, commit.head, kPrefix + kMaxDirectory, "copy of HEAD");
-  check(frame, commit.resume, kMaxResumeState, "resume state");
+  check_section(frame, commit.index, frame.prefix.length, "index");
+  check_section(frame, commit.head, kPrefix + kMaxDirectory, "copy of HEAD");
+  check_section(frame, commit.resume, kMaxResumeState, "resume state");
   if (commit.index.length % kIndexEntry != 0 || commit.first_chunk > commit.chunks ||
       commit.index.length / kIndexEntry != commit.chunks - commit.first_chunk ||
       commit.chunks > frame.prefix.offset / kPage ||  // each takes a page at least

@@ -26,7 +26,7 @@ struct Writer::State {
   // The first error of any call sticks.
   template <class Call>
   void guard(const Call& call) {
-    if (error) throw *error;
+    if (error) throw Error(*error);
     if (!file->is_open()) throw Error(ErrorCode::usage, path() + ": is closed already");
     try {
       call();
@@ -35,7 +35,7 @@ struct Writer::State {
       throw;
     } catch (const std::bad_alloc&) {
       error = Error(ErrorCode::limit, path() + ": out of memory; use smaller chunks");
-      throw *error;
+      throw Error(*error);
     }
   }
 

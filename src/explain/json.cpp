@@ -14,16 +14,16 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // What is no number is null, as JSON wants it; an infinite hit distance is a miss.
-Json number(double value) {
+Json json_number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 template <typename V>
 Json triple(const V& v) {
-  return Json::array({number(static_cast<double>(v.x)), number(static_cast<double>(v.y)),
-                      number(static_cast<double>(v.z))});
+  return Json::array({json_number(static_cast<double>(v.x)), json_number(static_cast<double>(v.y)),
+                      json_number(static_cast<double>(v.z))});
 }
-Json number(const std::optional<double>& value) {
-  return value ? number(*value) : Json(nullptr);
+Json json_number(const std::optional<double>& value) {
+  return value ? json_number(*value) : Json(nullptr);
 }
 
 class JsonWriter {
@@ -139,12 +139,12 @@ class JsonWriter {
 
   [[nodiscard]] Json apart(std::size_t pair) const {
     const PairFeatures f = features_of(e_, e_.pairs[pair]);
-    return {{"angle", number(f.angle)},
-            {"reflectance", number(f.reflectance)},
+    return {{"angle", json_number(f.angle)},
+            {"reflectance", json_number(f.reflectance)},
             {"lights", f.lights ? Json(*f.lights) : Json(nullptr)},
-            {"hit_distance", number(f.hit_distance)},
-            {"plane", number(f.plane)},
-            {"direction", number(f.direction)},
+            {"hit_distance", json_number(f.hit_distance)},
+            {"plane", json_number(f.plane)},
+            {"direction", json_number(f.direction)},
             {"material", f.material ? Json(*f.material) : Json(nullptr)}};
   }
 
@@ -169,7 +169,7 @@ class JsonWriter {
       if (!column.empty()) row[name] = make(column[i]);
     };
     const auto as_is = [](auto n) { return Json(n); };
-    const auto real = [](float n) { return number(double{n}); };
+    const auto real = [](float n) { return json_number(double{n}); };
     const auto vec = [](const Vec3& n) { return triple(n); };
     put("camera", v.camera, as_is);
     put("position", v.position, vec);
@@ -194,7 +194,7 @@ class JsonWriter {
     const ExplainedPath& of = e_.paths[p];
     Json row = vertex(of.vertex);
     row["fate"] = kFateNames[static_cast<std::size_t>(of.fate)];
-    row["radius"] = number(double{of.radius});
+    row["radius"] = json_number(double{of.radius});
     row["c_bar"] = triple(of.c_bar);
     row["averaged"] = of.neighbors;
     row["in_ball"] = of.in_ball;

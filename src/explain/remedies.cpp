@@ -122,6 +122,7 @@ std::vector<Remedy> find_remedies(const ExplainResult& explanation, const PixelI
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<Remedy> remedies;
+  remedies.reserve(found.size());
   for (const auto& [gain, remedy] : found) remedies.push_back(remedy);
   return remedies;
 }

@@ -113,7 +113,7 @@ void PointColours::set_exposure(float stops) {
 }
 
 std::size_t PointColours::bytes() const {
-  return 12u * (1u + (throughput_ ? 1u : 0u) + (unfiltered_ ? 1u : 0u));
+  return std::size_t{12} * (1u + (throughput_ ? 1u : 0u) + (unfiltered_ ? 1u : 0u));
 }
 
 }  // namespace psf::exports

@@ -98,7 +98,7 @@ class OutputFolder {
   OutputFolder& operator=(const OutputFolder&) = delete;
 
   [[nodiscard]] std::string temporary(const std::string& name) {
-    const std::string path = (temporary_ / name).string();
+    std::string path = (temporary_ / name).string();
     unfinished_.emplace_back(path);
     return path;
   }

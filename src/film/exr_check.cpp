@@ -113,7 +113,7 @@ std::uint64_t most_expansion(Imf::Compression compression) {
       return 1;
     case Imf::DWAA_COMPRESSION:
     case Imf::DWAB_COMPRESSION:
-      return 1032 * 64;
+      return std::uint64_t{1032} * 64;
     default:
       return 1400;
   }

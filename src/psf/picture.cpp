@@ -104,6 +104,7 @@ double Picture::error(const Picture& reference, std::string_view metric) const {
 
 std::vector<std::string> metric_names() {
   std::vector<std::string> names;
+  names.reserve(metrics::kMetricCount);
   for (const metrics::Metric metric : metrics::kAllMetrics) names.emplace_back(name(metric));
   return names;
 }

@@ -31,7 +31,7 @@ float proposal(float r_sq) {
 
 // FLANN measures with our definition, so what it hands us needs no second look at the point.
 struct BallDistance {
-  using is_kdtree_distance = bool;
+  using is_kdtree_distance = bool;  // NOLINT(readability-identifier-naming): FLANN asks for it
   using ElementType = float;
   using ResultType = float;
 

@@ -92,7 +92,7 @@ std::string csv_cell(const Json& value) {
 Json read_study_file(const std::string& path, const std::string& kind, const std::string& remedy) {
   std::ifstream file(path);
   if (!file) throw Error(ErrorCode::io, path + ": cannot be read");
-  const Json json = Json::parse(file, nullptr, false);
+  Json json = Json::parse(file, nullptr, false);
   const auto refuse = [&](const std::string& why) {
     return Error(ErrorCode::bad_input, fmt::format("{}: {}; {}", path, why, remedy));
   };

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
+#include <algorithm>
 
 #include "core/error.h"
 
@@ -69,9 +69,9 @@ void Accel::add_mesh(const Mesh& mesh, unsigned id) {
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                mesh.positions.data(), 0, sizeof(Vec3), count);
   } else {
-    void* copy = rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0,
-                                         RTC_FORMAT_FLOAT3, sizeof(Vec3), count);
-    if (copy != nullptr) std::memcpy(copy, mesh.positions.data(), count * sizeof(Vec3));
+    auto* copy = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
+        geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), count));
+    if (copy != nullptr) std::ranges::copy(mesh.positions, copy);
   }
   rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                              mesh.triangles.data(), 0, sizeof(mesh.triangles[0]),

@@ -62,7 +62,8 @@ Mesh make_lathe(std::span<const Vec2> profile, std::uint32_t segments) {
   for (std::size_t i = 1; i < profile.size(); ++i) length += (profile[i] - profile[i - 1]).length();
   float done = 0;
   for (std::size_t i = 1; i < profile.size(); ++i) {
-    const Vec2 low = profile[i - 1], high = profile[i], along = high - low;
+    const Vec2 &low = profile[i - 1], &high = profile[i];
+    const Vec2 along = high - low;
     const float step = along.length();
     if (step == 0) continue;
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());

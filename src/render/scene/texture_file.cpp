@@ -194,8 +194,6 @@ std::optional<std::size_t> TexelMap::stored(std::size_t x, std::size_t y) const 
       column = right - column, row = bottom - row;
       break;
     case 4:
-      row = bottom - row;
-      break;
     case 6:
       row = bottom - row;
       break;

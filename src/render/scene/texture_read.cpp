@@ -103,9 +103,9 @@ Error unreadable(const std::string& name, const std::string& why) {
 }
 
 // Values of a kind in the range that their use allows; counts those that were not.
-class Range {
+class ValueRange {
  public:
-  Range(const std::string& name, TextureUse use, std::size_t width)
+  ValueRange(const std::string& name, TextureUse use, std::size_t width)
       : name_(name), most_(use == TextureUse::radiance ? INFINITY : 1), width_(width) {}
 
   [[nodiscard]] Rgb clamp(const Rgb& c, std::size_t index) {
@@ -213,7 +213,7 @@ Texture Texture::read(const std::string& name, std::span<const unsigned char> by
   read_into(OIIO::TypeDesc::FLOAT, values);
   const auto matrix =
       plain || use == TextureUse::numbers ? std::optional<Imath::M33f>() : to_rec709(spec);
-  Range range(name, use, texture.width_);
+  ValueRange range(name, use, texture.width_);
   texture.texels_.resize(count, Rgb(0));
   for (std::size_t i = 0; i < count; ++i) {
     const auto stored = map.stored(i % texture.width_, i / texture.width_);

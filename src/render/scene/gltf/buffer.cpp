@@ -132,7 +132,7 @@ std::string file_of_uri(const GltfLoad& load, const JsonCursor& uri) {
   const std::string decoded = decode_percent(text);
   if (decoded.empty() || decoded.find('\0') != std::string::npos)
     uri.fail("\"" + brief_uri(text) + "\" is no name of a file");
-  const std::string path = find_file(load.path, decoded);
+  std::string path = find_file(load.path, decoded);
   std::error_code ignored;
   if (fs::exists(path, ignored)) return path;
   const std::string as_written = find_file(load.path, text);  // a name with a % in it, not escaped

@@ -11,8 +11,6 @@
 namespace psf::render {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 // The image of a direction, unit.
 Vec3 turn(const Imath::M44d& m, const Imath::V3d& direction) {
   Imath::V3d turned;
@@ -35,7 +33,8 @@ void add_gltf_camera(GltfLoad& load, const JsonCursor& index, const std::string&
     return load.leave_out("orthographic cameras are left out", gltf_place(json));
   const JsonCursor lens = json.at("perspective");
   load.check_keys(lens, {"aspectRatio", "yfov", "zfar", "znear"});
-  const float yfov = lens.at("yfov").number({1e-4, kPi - 1e-4, "of radians in (0, pi)"});
+  const float yfov =
+      lens.at("yfov").number({1e-4, std::numbers::pi - 1e-4, "of radians in (0, pi)"});
   for (const char* key : {"znear", "zfar"}) {
     if (const auto distance = lens.find(key)) (void)distance->number(kPositive);
   }
@@ -79,9 +78,10 @@ void add_gltf_light(GltfLoad& load, const JsonCursor& index, const Imath::M44d& 
   if (light.kind == LightKind::spot) {
     const JsonCursor spot = json.at("spot");
     load.check_keys(spot, {"innerConeAngle", "outerConeAngle"});
-    constexpr Range kAngle{0, kPi / 2 + 1e-6, "of radians in [0, pi/2]"};
+    constexpr Range kAngle{0, std::numbers::pi / 2 + 1e-6, "of radians in [0, pi/2]"};
     const auto inner_json = spot.find("innerConeAngle"), outer_json = spot.find("outerConeAngle");
-    const double outer = std::max(1e-4, outer_json ? double{outer_json->number(kAngle)} : kPi / 4);
+    const double outer =
+        std::max(1e-4, outer_json ? double{outer_json->number(kAngle)} : std::numbers::pi / 4);
     const double inner = inner_json ? double{inner_json->number(kAngle)} : 0;
     if (inner > outer) inner_json->fail("the inner angle is larger than the outer one");
     light.cos_inner = static_cast<float>(std::cos(inner));

@@ -16,7 +16,7 @@
 namespace psf::render {
 namespace {
 
-constexpr std::string_view kSpace = " \t";
+constexpr std::string_view kBlanks = " \t";
 
 class ObjLoad {
  public:
@@ -63,12 +63,12 @@ class ObjLoad {
         warn_of_missing();
         add_library(find_file(path_, found));
       } else {
-        length = std::min(rest.find_first_of(kSpace), rest.size());
+        length = std::min(rest.find_first_of(kBlanks), rest.size());
         const char* const begin = missing.empty() ? rest.data() : missing.data();
         missing = {begin, static_cast<std::size_t>(rest.data() + length - begin)};
       }
       rest.remove_prefix(length);
-      rest.remove_prefix(std::min(rest.find_first_not_of(kSpace), rest.size()));
+      rest.remove_prefix(std::min(rest.find_first_not_of(kBlanks), rest.size()));
     }
     warn_of_missing();
   }
@@ -79,8 +79,8 @@ class ObjLoad {
     constexpr std::size_t kMostWords = 16;
     std::vector<std::size_t> lengths;
     for (std::size_t at = 0; at < text.size() && lengths.size() < kMostWords;
-         at = std::min(text.find_first_not_of(kSpace, lengths.back()), text.size())) {
-      lengths.push_back(std::min(text.find_first_of(kSpace, at), text.size()));
+         at = std::min(text.find_first_not_of(kBlanks, lengths.back()), text.size())) {
+      lengths.push_back(std::min(text.find_first_of(kBlanks, at), text.size()));
     }
     if (!lengths.empty() && lengths.back() < text.size()) lengths.push_back(text.size());
     for (; !lengths.empty(); lengths.pop_back()) {
@@ -125,7 +125,7 @@ class ObjLoad {
     const auto bare = comment == std::string::npos
                           ? materials_.end()
                           : materials_.find(part.material.substr(
-                                0, part.material.find_last_not_of(kSpace, comment) + 1));
+                                0, part.material.find_last_not_of(kBlanks, comment) + 1));
     if (bare != materials_.end()) return bare->second;
     if (missing_.empty()) missing_line_ = part.line;
     missing_.push_back(part.material);
