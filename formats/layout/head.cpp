@@ -73,7 +73,7 @@ std::size_t Head::stride() const {
 
 namespace {
 
-[[noreturn]] void refuse(ErrorCode code, const std::string& why) {
+[[noreturn]] void refuse_head(ErrorCode code, const std::string& why) {
   throw Error(code, why);
 }
 
@@ -83,26 +83,28 @@ bool is_printable(std::string_view name) {
 
 void validate(const Channel& channel) {
   if (channel.name.empty() || channel.name.size() > kChannelName || !is_printable(channel.name)) {
-    refuse(ErrorCode::bad_input,
-           fmt::format("a channel's name must be 1 to {} printable ASCII characters without spaces",
-                       kChannelName));
+    refuse_head(
+        ErrorCode::bad_input,
+        fmt::format("a channel's name must be 1 to {} printable ASCII characters without spaces",
+                    kChannelName));
   }
   if (size_of(channel.type) == 0) {
-    refuse(ErrorCode::bad_input, fmt::format("channel {}: unknown type {}", channel.name,
-                                             static_cast<int>(channel.type)));
+    refuse_head(ErrorCode::bad_input, fmt::format("channel {}: unknown type {}", channel.name,
+                                                  static_cast<int>(channel.type)));
   }
   if (channel.components < 1 || channel.components > kMaxComponents) {
-    refuse(ErrorCode::bad_input, fmt::format("channel {}: {} components; 1 to {} are possible",
-                                             channel.name, channel.components, kMaxComponents));
+    refuse_head(ErrorCode::bad_input,
+                fmt::format("channel {}: {} components; 1 to {} are possible", channel.name,
+                            channel.components, kMaxComponents));
   }
   if (channel.encoding == Encoding::plain) return;
   if (channel.encoding != Encoding::octahedral) {
-    refuse(ErrorCode::bad_input, fmt::format("channel {}: unknown encoding {}", channel.name,
-                                             static_cast<int>(channel.encoding)));
+    refuse_head(ErrorCode::bad_input, fmt::format("channel {}: unknown encoding {}", channel.name,
+                                                  static_cast<int>(channel.encoding)));
   }
   if (channel.type != Type::u16 || channel.components != 2) {
-    refuse(ErrorCode::bad_input,
-           fmt::format("channel {}: an octahedral channel is u16 x 2", channel.name));
+    refuse_head(ErrorCode::bad_input,
+                fmt::format("channel {}: an octahedral channel is u16 x 2", channel.name));
   }
 }
 
@@ -110,29 +112,30 @@ void validate(const Channel& channel) {
 
 void validate(const Head& head) {
   if (head.major != kMajor || (head.required_features & ~kKnownRequiredFeatures) != 0) {
-    refuse(ErrorCode::bad_input, "the head asks for features that version 1 does not have");
+    refuse_head(ErrorCode::bad_input, "the head asks for features that version 1 does not have");
   }
   if (head.channels.empty() || head.channels.size() > kMaxChannels) {
-    refuse(ErrorCode::bad_input,
-           fmt::format("{} channels; 1 to {} are possible", head.channels.size(), kMaxChannels));
+    refuse_head(ErrorCode::bad_input, fmt::format("{} channels; 1 to {} are possible",
+                                                  head.channels.size(), kMaxChannels));
   }
   std::set<std::string_view> names;
   for (const Channel& channel : head.channels) {
     validate(channel);
     if (!names.insert(channel.name).second) {
-      refuse(ErrorCode::bad_input, fmt::format("channel {} is declared twice", channel.name));
+      refuse_head(ErrorCode::bad_input, fmt::format("channel {} is declared twice", channel.name));
     }
   }
   if (head.chunk_capacity < 1 || head.chunk_capacity > kMaxChunkRecords ||
       head.chunk_capacity * std::uint64_t{head.stride()} > kMaxChunkBytes) {
-    refuse(ErrorCode::limit,
-           fmt::format("chunks of {} records of {} bytes; a chunk has 1 to {} records and at most "
-                       "{} MiB",
-                       head.chunk_capacity, head.stride(), kMaxChunkRecords, kMaxChunkBytes >> 20));
+    refuse_head(
+        ErrorCode::limit,
+        fmt::format("chunks of {} records of {} bytes; a chunk has 1 to {} records and at most "
+                    "{} MiB",
+                    head.chunk_capacity, head.stride(), kMaxChunkRecords, kMaxChunkBytes >> 20));
   }
   if (head.metadata.size() > kMaxMetadata) {
-    refuse(ErrorCode::limit, fmt::format("{} bytes of metadata; at most {} are possible",
-                                         head.metadata.size(), kMaxMetadata));
+    refuse_head(ErrorCode::limit, fmt::format("{} bytes of metadata; at most {} are possible",
+                                              head.metadata.size(), kMaxMetadata));
   }
 }
 

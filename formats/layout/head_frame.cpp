@@ -28,7 +28,7 @@ Channel decode_channel(ByteReader& in) {
   return channel;
 }
 
-[[noreturn]] void refuse(const Head& head, const std::string& why) {
+[[noreturn]] void refuse_layout(const Head& head, const std::string& why) {
   throw Error(ErrorCode::bad_input,
               fmt::format("written by version {}.{} of the format, {}; this program reads version "
                           "{}: use a newer one",
@@ -66,11 +66,11 @@ Head decode_head(std::span<const std::byte> directory) {
   head.channels.clear();
   head.major = in.get<std::uint16_t>();
   head.minor = in.get<std::uint16_t>();
-  if (head.major != kMajor) refuse(head, "whose layout is another");
+  if (head.major != kMajor) refuse_layout(head, "whose layout is another");
   head.required_features = in.get<std::uint32_t>();
   if (const std::uint32_t unknown = head.required_features & ~kKnownRequiredFeatures) {
-    refuse(head,
-           fmt::format("with features that must be understood to read it (bits {:#x})", unknown));
+    refuse_layout(head, fmt::format("with features that must be understood to read it (bits {:#x})",
+                                    unknown));
   }
   head.optional_features = in.get<std::uint32_t>();
   head.chunk_capacity = in.get<std::uint32_t>();

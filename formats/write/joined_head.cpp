@@ -27,7 +27,8 @@ bool has(const List& list, std::string_view name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
-[[noreturn]] void refuse(const Reader& reader, const Reader& first, const std::string& why) {
+[[noreturn]] void refuse_to_join(const Reader& reader, const Reader& first,
+                                 const std::string& why) {
   throw Error(ErrorCode::bad_input,
               fmt::format("{}: cannot be joined with {}: {}", reader.path(), first.path(), why));
 }
@@ -49,15 +50,16 @@ void check_joined(const Reader& reader, const Reader& first) {
            own.channels[k] == other.channels[k]) {
       ++k;
     }
-    refuse(reader, first,
-           fmt::format("it has other channels: as number {} {}, not {}; 'psf cat --channels' and "
-                       "'--quantize' make them the same",
-                       k, k < own.channels.size() ? to_text(own.channels[k]) : "none",
-                       k < other.channels.size() ? to_text(other.channels[k]) : "none"));
+    refuse_to_join(
+        reader, first,
+        fmt::format("it has other channels: as number {} {}, not {}; 'psf cat --channels' and "
+                    "'--quantize' make them the same",
+                    k, k < own.channels.size() ? to_text(own.channels[k]) : "none",
+                    k < other.channels.size() ? to_text(other.channels[k]) : "none"));
   }
   if (own.minor != other.minor || own.optional_features != other.optional_features ||
       own.later_fields != other.later_fields || own.later_bytes != other.later_bytes) {
-    refuse(reader, first, "it is of another version of the format");
+    refuse_to_join(reader, first, "it is of another version of the format");
   }
   const Json now = metadata_of(reader), before = metadata_of(first);
   const auto compare = [&](const std::string& key) {
@@ -66,9 +68,9 @@ void check_joined(const Reader& reader, const Reader& first) {
     if (a == b) return;
     if (key == kMaterials && (a.is_null() || b.is_null())) return;  // names that one does not tell
     const bool brief = a.dump().size() + b.dump().size() < 120;
-    refuse(reader, first,
-           fmt::format("its {} is another{}", key,
-                       brief ? fmt::format(": {}, not {}", a.dump(), b.dump()) : ""));
+    refuse_to_join(reader, first,
+                   fmt::format("its {} is another{}", key,
+                               brief ? fmt::format(": {}, not {}", a.dump(), b.dump()) : ""));
   };
   for (const auto& item : now.items()) compare(item.key());
   for (const auto& item : before.items()) compare(item.key());

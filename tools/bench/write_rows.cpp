@@ -45,6 +45,7 @@ Row once(std::string name, std::string what, double value, std::optional<Target>
 double run_program(const std::string& program, std::vector<std::string> arguments) {
   std::vector<char*> argv;
   arguments.insert(arguments.begin(), program);
+  argv.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;
