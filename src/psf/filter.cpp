@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "core/error.h"
 #include "filter/blocks.h"
@@ -168,8 +167,11 @@ FilteredRecords filter_records(const Records& records, std::span<const Camera> c
     result.pictures.push_back(to_picture(pictures[k].image(), cameras[k].name));
   }
   result.c_bar.resize(3 * columns.size());
-  if (!average.c_bar.empty()) {
-    std::memcpy(result.c_bar.data(), average.c_bar.data(), result.c_bar.size() * sizeof(float));
+  for (std::size_t i = 0; i < average.c_bar.size(); ++i) {
+    const Rgb& color = average.c_bar[i];
+    result.c_bar[3 * i] = color.x;
+    result.c_bar[3 * i + 1] = color.y;
+    result.c_bar[3 * i + 2] = color.z;
   }
   result.neighbors = std::move(average.neighbors);
   if (!average.radius.empty()) result.radius = std::move(average.radius);

@@ -78,6 +78,7 @@ inline void end_at_exit(void (*interrupt)() noexcept) {
 }
 
 // A psf.Error with the attribute `code`; ^C is KeyboardInterrupt. Backquotes of parameters go.
+// NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 asks for a value.
 inline void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);

@@ -108,6 +108,7 @@ std::vector<NoiseShare> noise_shares(const Dump& dump, const PassSelection& pass
     add_noise(visit.records, roles.of, 0, visit.records.size(), moments);
   });
   std::vector<NoiseShare> shares;
+  shares.reserve(moments.size());
   for (const NoiseMoments& one : moments) shares.push_back(one.share(epsilon));
   return shares;
 }

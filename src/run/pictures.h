@@ -36,7 +36,7 @@ class CameraPictures {
 
   // The bytes per pixel of the sums, and those that image() and writing it take temporarily.
   static constexpr std::uint64_t kBytesOfSums = 5 * (3 * sizeof(double) + sizeof(std::uint64_t));
-  static constexpr std::uint64_t kBytesToWrite = 2 * 14 * sizeof(float);
+  static constexpr std::uint64_t kBytesToWrite = sizeof(float) * 2 * 14;
 
  private:
   [[nodiscard]] std::vector<float> unfiltered() const;

@@ -21,7 +21,7 @@ class Floor {
   std::uint64_t run(std::size_t times);
 
   // The number of pairs that run(1) tests.
-  static constexpr std::size_t kPairs = 16 * 256;
+  static constexpr std::size_t kPairs = std::size_t{16} * 256;
 
  private:
   struct State;

@@ -36,7 +36,7 @@ unsigned half_of(const Records& records, const Block& block, std::uint32_t i) {
 // every k passes one is chosen, for each pixel by itself. So the choice is independent of g_i,
 // which comes from other pixels (a lattice's choice would not be), and all pixels have as many
 // sources.
-bool is_chosen(std::uint64_t pixel, std::uint64_t pass, std::uint32_t k) {
+bool is_drawn(std::uint64_t pixel, std::uint64_t pass, std::uint32_t k) {
   const std::uint64_t coin = scramble(scramble(pass / k) ^ pixel);
   return pass % k == ((coin >> 32) * k) >> 32;
 }
@@ -98,7 +98,7 @@ class Control {
       Role& role = roles_.of[i];
       if (!is_input(role)) continue;
       const std::uint64_t pass = (block_.first_path + i) / pixels;
-      if (!is_chosen(pixel_of(r_, i), pass, p_.sources)) {
+      if (!is_drawn(pixel_of(r_, i), pass, p_.sources)) {
         role = role == Role::source ? Role::query : Role::unchosen;
       } else if (role == Role::source) {
         chosen.push_back(i);

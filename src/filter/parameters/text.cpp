@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <iterator>
 #include <string_view>
 #include <utility>
@@ -55,7 +56,7 @@ template <class T>
 T parse_number(const char* name, const std::string& text) {
   const bool has_plus = text.starts_with('+') && !text.starts_with("+-");
   const std::optional<T> value = number<T>(std::string_view(text).substr(has_plus ? 1 : 0));
-  if (!value || !(*value == *value)) refuse(name, text, "is no number");
+  if (!value || std::isnan(static_cast<double>(*value))) refuse(name, text, "is no number");
   return *value;
 }
 
