@@ -96,12 +96,14 @@ class PSF_API Dump {
   // passes. Throws as filter() does, and Error{usage} for sets of one block.
   [[nodiscard]] TuneResult tune(std::span<const Parameters> sets,
                                 const TuneOptions& options = {}) const;
-  // What psf explain does: a pixel, 0,0 at the top left, or one path, by its number in the dump,
-  // as filter() makes it. Throws as filter() does, and Error{usage} for a pixel or path that the
-  // dump does not have, Error{bad_input} where no path falls into the pixel.
+  // What psf explain does: a pixel, 0,0 at the top left, as filter() makes it. Throws as filter()
+  // does, and Error{usage} for a pixel that the picture does not have, Error{bad_input} where no
+  // path falls into the pixel.
   [[nodiscard]] Explanation explain(std::uint32_t x, std::uint32_t y,
                                     const Parameters& parameters = {},
                                     const ExplainOptions& options = {}) const;
+  // The same of one path, by its number in the dump. Throws as filter() does, and Error{usage} where
+  // it is not among the passes chosen.
   [[nodiscard]] Explanation explain_path(std::uint64_t path, const Parameters& parameters = {},
                                          const ExplainOptions& options = {}) const;
 

@@ -12,8 +12,9 @@ namespace psf {
 // `stopped` is true, which any thread may say. The calls of other threads go on.
 class PSF_API Interruptible {
  public:
+  // Begins with the calls that this thread makes from now on; `stopped` is borrowed.
   explicit Interruptible(const std::atomic<bool>& stopped);
-  ~Interruptible();
+  ~Interruptible();  // The thread's calls end as before.
   Interruptible(const Interruptible&) = delete;
   Interruptible& operator=(const Interruptible&) = delete;
 
