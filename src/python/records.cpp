@@ -53,6 +53,7 @@ void bind_records(py::module_& m) {
              const std::vector<std::tuple<std::string, std::string, std::size_t, bool>>& channels,
              bool compress, const std::string& metadata) {
             std::vector<Channel> all;
+            all.reserve(channels.size());
             for (const auto& [name, type, components, octahedral] : channels) {
               all.push_back({name, type, components, octahedral});
             }
@@ -65,6 +66,7 @@ void bind_records(py::module_& m) {
       .def("append",
            [](DumpWriter& writer, std::size_t count, const std::vector<py::array>& arrays) {
              std::vector<const void*> columns;
+             columns.reserve(arrays.size());
              for (const py::array& array : arrays) columns.push_back(array.data());
              const py::gil_scoped_release released;
              writer.append(count, columns);

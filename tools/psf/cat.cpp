@@ -12,9 +12,9 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/standard_streams.h"
+#include "core/text.h"
 #include "formats/write/concatenate.h"
 #include "pass_range.h"
-#include "text.h"
 #include "verbs.h"
 
 namespace psf::tools {
@@ -56,12 +56,12 @@ void run(const CatOptions& options) {
     for (const std::string& note : report.notes) core::say("note: " + note);
     if (report.overflows > 0) {
       core::say(fmt::format("note: {} too large for f16 and became infinite",
-                            counted(report.overflows, "value was", "values were")));
+                            core::counted(report.overflows, "value was", "values were")));
     }
   }
   fmt::print("{}: {} in {}, {} bytes\n", options.output,
-             counted(report.records, "record", "records"), counted(report.passes, "pass", "passes"),
-             with_commas(report.bytes));
+             core::counted(report.records, "record", "records"),
+             core::counted(report.passes, "pass", "passes"), core::with_commas(report.bytes));
   if (!options.common.json.empty()) {
     const nlohmann::ordered_json figures = {
         {"inputs", options.inputs}, {"output", options.output}, {"records", report.records},

@@ -16,6 +16,7 @@
 #include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
+#include "core/text.h"
 #include "film/image.h"
 #include "film/picture.h"
 #include "metric_option.h"
@@ -99,7 +100,7 @@ void write_error_pictures(const CompareOptions& options, metrics::Metric metric,
       fmt::print("{}: {} in channel Y\n", path, what);
     } else {
       fmt::print("{}: {} in {} from 0 to {:.4g}, {} above\n", path, what, options.colors, scale.max,
-                 counted(scale.above, "pixel", "pixels"));
+                 core::counted(scale.above, "pixel", "pixels"));
     }
   }
 }
@@ -114,7 +115,7 @@ void judge(const CompareOptions& options, const CompareReport& report) {
     };
     if (row.values.non_finite > 0) {
       fail(fmt::format("no bound holds: {} not finite here or in {}",
-                       counted(row.values.non_finite, "pixel is", "pixels are"),
+                       core::counted(row.values.non_finite, "pixel is", "pixels are"),
                        options.reference));
     }
     const double value = row.values[report.first];

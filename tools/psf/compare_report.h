@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/text.h"
 #include "metrics/errors.h"
 #include "metrics/metrics.h"
-#include "text.h"
 
 namespace psf::tools {
 
@@ -84,12 +84,13 @@ inline void print_left_out(const CompareReport& report) {
     const metrics::Metrics& values = row.values;
     if (report.trim > 0) {
       fmt::print("{}left out of each metric: the {} of the largest error, of {}\n", where,
-                 counted(values.trimmed, "pixel", "pixels"),
-                 with_commas(values.pixels + values.trimmed));
+                 core::counted(values.trimmed, "pixel", "pixels"),
+                 core::with_commas(values.pixels + values.trimmed));
     }
     if (values.non_finite > 0) {
       fmt::print("{}left out: {} not finite in {} or {}\n", where,
-                 counted(values.non_finite, "pixel", "pixels"), report.picture, report.reference);
+                 core::counted(values.non_finite, "pixel", "pixels"), report.picture,
+                 report.reference);
     }
   }
 }

@@ -13,6 +13,7 @@
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/text.h"
 #include "filter_options.h"
 #include "notes.h"
 #include "parameter_lists.h"
@@ -20,7 +21,6 @@
 #include "study/converge_file.h"
 #include "study/render_time.h"
 #include "study_folder.h"
-#include "text.h"
 #include "verbs.h"
 #include "version.h"
 

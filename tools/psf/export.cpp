@@ -19,10 +19,10 @@
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/text.h"
 #include "formats/read/reader.h"
 #include "option_values.h"
 #include "pass_range.h"
-#include "text.h"
 #include "verbs.h"
 
 namespace psf::tools {
@@ -90,12 +90,14 @@ void print(const ExportOptions& options, const std::string& format,
            const exports::ExportResult& outcome) {
   const bool points = format == "ply";
   fmt::print("{}: {} of {}, {:.1f} MB", options.output,
-             points ? counted(outcome.written, "point", "points")
-                    : counted(outcome.written, "record", "records"),
-             counted(outcome.passes, "pass", "passes"), static_cast<double>(outcome.bytes) / 1e6);
+             points ? core::counted(outcome.written, "point", "points")
+                    : core::counted(outcome.written, "record", "records"),
+             core::counted(outcome.passes, "pass", "passes"),
+             static_cast<double>(outcome.bytes) / 1e6);
   if (format == "npy") fmt::print(" in {} files", outcome.files.size());
-  if (points) fmt::print("; left out {} without vertex", with_commas(outcome.without_vertex));
-  if (outcome.non_finite > 0) fmt::print(" and {} not finite", with_commas(outcome.non_finite));
+  if (points) fmt::print("; left out {} without vertex", core::with_commas(outcome.without_vertex));
+  if (outcome.non_finite > 0)
+    fmt::print(" and {} not finite", core::with_commas(outcome.non_finite));
   if (options.exposure == "auto") fmt::print("; exposure {:.2f}", outcome.exposure);
   fmt::print("\n");
 }

@@ -17,6 +17,7 @@
 #include "core/progress.h"
 #include "core/seconds.h"
 #include "core/standard_streams.h"
+#include "core/text.h"
 #include "film/image.h"
 #include "film/picture_names.h"
 #include "filter_options.h"
@@ -118,8 +119,8 @@ std::vector<std::string> filter_growing(run::Dump& dump, const run::FilterReques
   const auto on_pictures = [&](const run::FilterResult& now) {
     written = writer.write(0, now.passes, now.pictures);
     if (!quiet) {
-      core::say(
-          fmt::format("{}: {}", counted(now.passes, "pass", "passes"), fmt::join(written, ", ")));
+      core::say(fmt::format("{}: {}", core::counted(now.passes, "pass", "passes"),
+                            fmt::join(written, ", ")));
     }
     last_seen = Clock::now();
     told = false;

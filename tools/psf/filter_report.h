@@ -7,10 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "core/text.h"
 #include "filter/parameters/text.h"
 #include "noise_report.h"
 #include "run/filter_dump.h"
-#include "text.h"
+#include "study/study_file.h"
 
 namespace psf::tools {
 
@@ -52,13 +53,13 @@ inline void print_report(const FilterReport& report) {
     fmt::print("{:<10} {}\n", name, text);
   };
   fmt::print("{}\n", report.input);
-  line("records", fmt::format("{} in {} and {}, {}", with_commas(s.records),
-                              counted(report.outcome.passes, "pass", "passes"),
-                              counted(report.outcome.blocks, "block", "blocks"),
-                              counted(report.cameras.size(), "camera", "cameras")));
-  line("averaged",
-       fmt::format("{} from {}; {} without vertex", with_commas(s.queries),
-                   counted(s.sources, "source", "sources"), with_commas(s.without_vertex)));
+  line("records", fmt::format("{} in {} and {}, {}", core::with_commas(s.records),
+                              core::counted(report.outcome.passes, "pass", "passes"),
+                              core::counted(report.outcome.blocks, "block", "blocks"),
+                              core::counted(report.cameras.size(), "camera", "cameras")));
+  line("averaged", fmt::format("{} from {}; {} without vertex", core::with_commas(s.queries),
+                               core::counted(s.sources, "source", "sources"),
+                               core::with_commas(s.without_vertex)));
   line("radius", fmt::format("{}, delta {:.4g}, block {}", filter::to_text(p.radius),
                              p.radius.delta, filter::to_text(p.block)));
   line("weights", weights_text(p));
@@ -68,8 +69,8 @@ inline void print_report(const FilterReport& report) {
                         static_cast<double>(s.candidates) / static_cast<double>(s.queries))
           : "";
   line("neighbors", fmt::format("mean {:.1f}, min {}, max {}{}", s.mean_neighbors(),
-                                s.queries == 0 ? "0" : with_commas(s.min_neighbors),
-                                with_commas(s.max_neighbors), in_the_ball));
+                                s.queries == 0 ? "0" : core::with_commas(s.min_neighbors),
+                                core::with_commas(s.max_neighbors), in_the_ball));
   if (p.count_refusals) {
     const auto share = [&s](std::uint64_t refused) {
       return fmt::format("{:.1f}%",
@@ -77,26 +78,28 @@ inline void print_report(const FilterReport& report) {
     };
     line("refused", listed(filter::kTermNames, s.refused, "none", share));
   }
-  line("orphans", s.orphans == 0
-                      ? "none"
-                      : fmt::format("{}, {} of them matched by no source", with_commas(s.orphans),
-                                    with_commas(s.orphans_unmatched)));
+  line("orphans", s.orphans == 0 ? "none"
+                                 : fmt::format("{}, {} of them matched by no source",
+                                               core::with_commas(s.orphans),
+                                               core::with_commas(s.orphans_unmatched)));
   const std::uint64_t left_out = s.left_out + s.without_source + report.outcome.overflows;
   if (left_out == 0) {
     line("left out", "none");
   } else {
     line("left out",
          fmt::format("{}: {} not finite ({}), {} in a block without source, {} overflowed",
-                     with_commas(left_out), with_commas(s.left_out),
+                     core::with_commas(left_out), core::with_commas(s.left_out),
                      listed(filter::kCheckedNames, s.non_finite, "none", with_commas),
-                     with_commas(s.without_source), with_commas(report.outcome.overflows)));
+                     core::with_commas(s.without_source),
+                     core::with_commas(report.outcome.overflows)));
   }
   const run::MemoryEstimate& memory = report.outcome.memory;
   line("memory",
        fmt::format("at most {} expected, with {} of records; {} was the peak, and {} of code",
-                   in_mebibytes(memory.total()), memory.blocks == 1 ? "one block" : "two blocks",
-                   in_mebibytes(report.peak.own),
-                   in_mebibytes(report.peak.process - report.peak.own)));
+                   core::in_mebibytes(memory.total()),
+                   memory.blocks == 1 ? "one block" : "two blocks",
+                   core::in_mebibytes(report.peak.own),
+                   core::in_mebibytes(report.peak.process - report.peak.own)));
   line("time",
        fmt::format(
            "{:.2f} s: waiting for the reader {:.2f}, index {:.2f}, filter {:.2f}, pictures {:.2f}, "
@@ -161,7 +164,7 @@ inline nlohmann::ordered_json to_json(const FilterReport& report) {
   json["refused"] = counted ? refused : Json(nullptr);
   std::vector<run::NoiseShare> noise;
   for (const run::NoiseMoments& of : report.outcome.noise) noise.push_back(of.share());
-  json["noise"] = noise_json(noise, report.cameras);
+  json["noise"] = study::describe_noise(noise, report.cameras);
   return json;
 }
 

@@ -21,6 +21,7 @@
 #include "formats/read/statistics.h"
 #include "info_tables.h"
 #include "noise_report.h"
+#include "study/study_file.h"
 #include "verbs.h"
 
 namespace psf::tools {
@@ -267,7 +268,7 @@ void run(const InfoOptions& options) {
   }
   if (!options.common.json.empty()) {
     nlohmann::ordered_json json = to_json(reader, sizes, statistics);
-    if (!noise.of.empty()) json["noise"] = noise_json(noise.of, metadata.cameras);
+    if (!noise.of.empty()) json["noise"] = study::describe_noise(noise.of, metadata.cameras);
     core::write_json_file(options.common.json, json);
   }
 }

@@ -1,4 +1,4 @@
-// The share of u in the noise of the picture without filter, as text and as JSON.
+// The share of u in the noise of the picture without filter, as text.
 #pragma once
 
 #include <fmt/format.h>
@@ -7,7 +7,6 @@
 #include <string>
 
 #include "run/noise_share.h"
-#include "study/study_file.h"
 
 namespace psf::tools {
 
@@ -17,8 +16,5 @@ inline std::string share_text(const run::NoiseShare& noise) {
   const double share = noise.share();
   return std::isnan(share) ? "no noise" : fmt::format("{:.1f}%", 100 * share);
 }
-
-// An entry a camera.
-inline constexpr auto* noise_json = &study::describe_noise;
 
 }  // namespace psf::tools

@@ -14,8 +14,8 @@
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/text.h"
 #include "fault_json.h"
-#include "text.h"
 #include "verbs.h"
 
 namespace psf::tools {
@@ -45,11 +45,11 @@ void print(const RecoverVerb& verb, const formats::RecoverResult& report) {
   for (const formats::Fault& fault : report.faults) fmt::print("found {}\n", fault.text());
   for (const formats::Fault& loss : report.losses) fmt::print("lost  {}\n", loss.text());
   fmt::print("{}: saved {} in {} to {}\n", verb.input,
-             counted(report.records_saved, "record", "records"),
-             counted(report.passes_saved, "pass", "passes"), verb.output);
+             core::counted(report.records_saved, "record", "records"),
+             core::counted(report.passes_saved, "pass", "passes"), verb.output);
   if (report.uncommitted_bytes > 0) {
     fmt::print("{}: {} bytes of a pass that was not finished are left out{}\n", verb.input,
-               with_commas(report.uncommitted_bytes),
+               core::with_commas(report.uncommitted_bytes),
                verb.options.uncommitted ? "" : "; --uncommitted takes what is whole of them");
   }
 }
@@ -74,7 +74,7 @@ void run(const RecoverVerb& verb) {
                 fmt::format("{}: {} lost; {} holds the rest", verb.input,
                             report.records_lost == 0
                                 ? "a pass is"
-                                : counted(report.records_lost, "record is", "records are"),
+                                : core::counted(report.records_lost, "record is", "records are"),
                             verb.output));
   }
 }

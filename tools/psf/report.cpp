@@ -12,7 +12,7 @@
 #include "core/json_text.h"
 #include "core/output_file.h"
 #include "core/standard_streams.h"
-#include "text.h"
+#include "core/text.h"
 #include "verbs.h"
 #include "version.h"
 
@@ -53,12 +53,14 @@ void run(const ReportCommand& command) {
   check_files(files_of(command.folders), {command.output, command.common.json});
   const report::ReportOutcome outcome =
       report::write_report(command.folders, command.output, command.report);
-  fmt::print(
-      "{}: {}, {}, {:.1f} MB\n", command.output, counted(outcome.sections, "study", "studies"),
-      counted(outcome.pictures, "picture", "pictures"), static_cast<double>(outcome.bytes) / 1e6);
+  fmt::print("{}: {}, {}, {:.1f} MB\n", command.output,
+             core::counted(outcome.sections, "study", "studies"),
+             core::counted(outcome.pictures, "picture", "pictures"),
+             static_cast<double>(outcome.bytes) / 1e6);
   if (outcome.pictures_left_out > 0 && !command.common.quiet) {
-    core::say(fmt::format("note: {} left out, the worst ones; see --max-pictures",
-                          counted(outcome.pictures_left_out, "picture was", "pictures were")));
+    core::say(
+        fmt::format("note: {} left out, the worst ones; see --max-pictures",
+                    core::counted(outcome.pictures_left_out, "picture was", "pictures were")));
   }
   if (!command.common.json.empty()) {
     const nlohmann::ordered_json figures = {{"report", command.output},

@@ -13,13 +13,13 @@
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/text.h"
 #include "filter_options.h"
 #include "notes.h"
 #include "parameter_lists.h"
 #include "pass_range.h"
 #include "study/sweep_file.h"
 #include "study_folder.h"
-#include "text.h"
 #include "verbs.h"
 #include "version.h"
 
@@ -156,7 +156,7 @@ void run(const SweepOptions& options) {
 
   print_best(file.json(), folder.metric());
   fmt::print("{} done now, {} were there; wrote {} and sweep.csv\n",
-             counted(missing.size(), "row", "rows"), asked.size() - missing.size(),
+             core::counted(missing.size(), "row", "rows"), asked.size() - missing.size(),
              (std::filesystem::path(folder.path()) / "sweep.json").string());
   if (!options.common.json.empty()) {
     core::write_json_file(options.common.json, file.json(), 1);

@@ -14,6 +14,7 @@
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/text.h"
 #include "filter/parameters/text.h"
 #include "filter_options.h"
 #include "noise_report.h"
@@ -22,7 +23,6 @@
 #include "pass_range.h"
 #include "study/tune_file.h"
 #include "study_folder.h"
-#include "text.h"
 #include "verbs.h"
 #include "version.h"
 

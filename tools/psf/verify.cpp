@@ -12,9 +12,9 @@
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "core/text.h"
 #include "fault_json.h"
 #include "formats/check/check.h"
-#include "text.h"
 #include "verbs.h"
 
 namespace psf::tools {
@@ -58,18 +58,19 @@ void run(const VerifyOptions& options) {
   const std::string tail = report.uncommitted_bytes == 0
                                ? ""
                                : fmt::format("; {} bytes behind the last commit are not committed",
-                                             with_commas(report.uncommitted_bytes));
+                                             core::with_commas(report.uncommitted_bytes));
   if (!report.faults.empty()) {
     throw Error(ErrorCode::comparison,
                 fmt::format("{}: {} in {}{}; 'psf recover' saves what is whole", options.input,
-                            counted(report.faults.size(), "fault", "faults"),
-                            counted(report.frames, "frame", "frames"), tail));
+                            core::counted(report.faults.size(), "fault", "faults"),
+                            core::counted(report.frames, "frame", "frames"), tail));
   }
   fmt::print("{}: whole: {} in {}, {} in {}, {}{}\n", options.input,
-             counted(report.records, "record", "records"), counted(report.passes, "pass", "passes"),
-             counted(report.columns, "column", "columns"),
-             counted(report.chunks, "chunk", "chunks"), report.closed ? "closed" : "not closed",
-             tail);
+             core::counted(report.records, "record", "records"),
+             core::counted(report.passes, "pass", "passes"),
+             core::counted(report.columns, "column", "columns"),
+             core::counted(report.chunks, "chunk", "chunks"),
+             report.closed ? "closed" : "not closed", tail);
 }
 
 }  // namespace

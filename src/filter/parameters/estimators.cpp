@@ -1,11 +1,10 @@
 #include "filter/parameters/estimators.h"
 
+#include "core/vec.h"
 #include "filter/parameters/parameters.h"
 
 namespace psf::filter {
 namespace {
-
-constexpr std::uint64_t kVector = 12, kWord = 4;  // bytes of 3 floats, of one
 
 constexpr Refusal kHashRefusals[] = {
     {[](const Parameters& p) { return p.weights.plane.has_value(); },
@@ -32,27 +31,27 @@ constexpr EstimatorInfo kEstimators[] = {
      .channels = {"normal", "direction"},
      .is_over_area = true,
      .shares_traversal = true,
-     .bytes = kWord},  // areas
+     .bytes = sizeof(float)},  // areas
     {.name = "hash",
      .meaning = "cells of a jittered grid",
      .channels = {"normal"},
      .refusals = kHashRefusals,
      .is_of_ball = false,
      // A key, its hash, two entries to sort, and places in cells, twice for orphans.
-     .bytes = 96 + 64 + kVector,
+     .bytes = 96 + 64 + sizeof(Rgb),
      .has_tree = false},
     {.name = "control",
      .meaning = "halves as control variates, unbiased",
      .refusals = kControlRefusals,
      .is_of_ball = false,
      // Values, means, moments, counts, and the roles of a half, whose tree is smaller.
-     .bytes = 3 * kVector + 3 * kWord + 1},
+     .bytes = 3 * sizeof(Rgb) + 3 * sizeof(float) + 1},
     {.name = "adaptive",
      .meaning = "balls whose contributions agree",
      .least_share = 1.0 / 16,
      // Radii in float and in double, and luminances. Its tree for rings is freed before the tree
      // for averages is built.
-     .bytes = kWord + 2 * kWord + kVector},
+     .bytes = sizeof(float) + sizeof(double) + sizeof(Rgb)},
 };
 
 }  // namespace

@@ -147,6 +147,7 @@ JobResult run_job(const Job& asked) {
   std::optional<formats::Writer> writer;
   const std::vector<std::size_t> cameras = chosen_cameras(scene, settings);
   std::vector<std::string> camera_names;
+  camera_names.reserve(cameras.size());
   for (const std::size_t camera : cameras) camera_names.push_back(scene.cameras[camera].name);
   const film::PictureNames names(job.images, camera_names);
   check_all_files(job, scene.files, names.all({}));

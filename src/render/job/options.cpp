@@ -42,7 +42,7 @@ std::optional<Imath::Vec3<T>> parse_triple(std::string_view text) {
 // "1,2,3", or one number for grey, of at least 0.
 std::optional<Vec3> parse_colour(std::string_view text) {
   const auto grey = parse_number<float>(text);
-  const auto colour = grey ? std::optional(Vec3(*grey)) : parse_triple<float>(text);
+  auto colour = grey ? std::optional(Vec3(*grey)) : parse_triple<float>(text);
   if (!colour || !(colour->x >= 0 && colour->y >= 0 && colour->z >= 0)) return std::nullopt;
   return colour;
 }
