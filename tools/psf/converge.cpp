@@ -198,9 +198,10 @@ void add_converge(CLI::App& app) {
   add_study_options(*command, options->study, false);
   add_parameter_lists(*command, options->lists);
   command
-      ->add_option("--render-json", options->render_figures,
-                   "what psf-render --json wrote: counts the render's time into speed-ups")
-      ->type_name("FILE[,FILE...]")
+      ->add_option(
+          "--render-json", options->render_figures,
+          "what psf-render --json wrote, comma-separated: counts the render's time into speed-ups")
+      ->type_name("FILE.json")
       ->delimiter(',')
       ->allow_extra_args(false);
   command->add_flag("--all-metrics", options->all_metrics, "SSIM and FLIP too: slower");

@@ -96,7 +96,7 @@ void add_filter_options(CLI::App& command, FilterOptions& options) {
       .add_option("-o,--output", options.outputs,
                   "picture, .exr with layers or .png; may be repeated")
       ->required()
-      ->type_name("FILE")
+      ->type_name("FILE.exr|.png")
       ->allow_extra_args(false);
   command
       .add_option("--layers", options.layers,
@@ -109,7 +109,7 @@ void add_filter_options(CLI::App& command, FilterOptions& options) {
   const std::vector<CLI::Option*> all = command.get_options();
   CLI::Option* tuned = command.add_option("--tuned", options.tuned,
                                           "take the parameters that psf tune --json chose");
-  tuned->type_name("FILE");
+  tuned->type_name("FILE.json");
   for (std::size_t k = before; k < all.size(); ++k) tuned->excludes(all[k]);
   command.add_option("--passes", options.passes, kPassesHelp)->type_name("FIRST:LAST");
   command

@@ -89,7 +89,7 @@ inline void print_report(const FilterReport& report) {
     line("left out",
          fmt::format("{}: {} not finite ({}), {} in a block without source, {} overflowed",
                      core::with_commas(left_out), core::with_commas(s.left_out),
-                     listed(filter::kCheckedNames, s.non_finite, "none", with_commas),
+                     listed(filter::kCheckedNames, s.non_finite, "none", core::with_commas),
                      core::with_commas(s.without_source),
                      core::with_commas(report.outcome.overflows)));
   }
