@@ -17,7 +17,8 @@ void interrupt() noexcept;
 void clear_interrupt() noexcept;
 
 // As long as it is there, interrupted() on its thread is also true once `stopped` is: the work of
-// one thread ends and that of the others goes on. The innermost one counts.
+// one thread ends and that of the others goes on. The innermost one counts. The thread that made it
+// destroys it, the innermost first.
 class Interruptible {
  public:
   explicit Interruptible(const std::atomic<bool>& stopped) noexcept;

@@ -15,6 +15,7 @@ namespace {
 
 // By the value of Estimator.
 constexpr std::array kMethods = {average, disk, hash, control, adaptive};
+static_assert(kMethods.size() == kEstimatorCount);
 
 }  // namespace
 

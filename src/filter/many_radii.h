@@ -1,4 +1,4 @@
-// [average] of one block for many radii at once, for sweeps over r0 and delta.
+// An estimator on one block for many radii at once, for sweeps over r0 and delta.
 #pragma once
 
 #include <cstdint>

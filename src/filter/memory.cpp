@@ -2,6 +2,7 @@
 
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include "filter/channels.h"
 
@@ -36,12 +37,11 @@ std::uint64_t memory_per_record(const Parameters& parameters) {
 
   const EstimatorInfo& estimator = info(parameters.estimator);
   std::uint64_t bytes = kResult + kLists + kRadius + estimator.bytes;
+  if (parameters.demodulate || parameters.iterations > 1) bytes += kVector;  // values to average
   if (!estimator.has_tree) return bytes;
   const std::uint64_t columns = kVector + compared(parameters);  // with positions
   const std::uint64_t groups = (2 * columns + kSum + kGroup - 1) / kGroup;
-  bytes += columns + kSum + kQuads + groups + kParents;
-  if (parameters.demodulate || parameters.iterations > 1) bytes += kVector;  // values to average
-  return bytes;
+  return bytes + columns + kSum + kQuads + groups + kParents;
 }
 
 }  // namespace psf::filter

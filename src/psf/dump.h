@@ -87,11 +87,9 @@ class PSF_API Dump {
                                     const FilterOptions& options = {}) const;
   // What psf sweep does, without files: every set, measured against a reference of one camera by
   // the metrics of these names; empty: relMSE. Sets that differ in r0 and delta alone share the work.
-  [[nodiscard]] std::vector<SweepRow> sweep(const Picture& reference,
-                                            std::span<const Parameters> sets,
-                                            std::span<const std::string> metrics = {},
-                                            const FilterOptions& options = {},
-                                            std::size_t camera = 0) const;
+  [[nodiscard]] SweepResult sweep(const Picture& reference, std::span<const Parameters> sets,
+                                  std::span<const std::string> metrics = {},
+                                  const FilterOptions& options = {}, std::size_t camera = 0) const;
   // What psf tune does: the error of every set without a reference, from independent parts of the
   // passes. Throws as filter() does, and Error{usage} for sets of one block.
   [[nodiscard]] TuneResult tune(std::span<const Parameters> sets,

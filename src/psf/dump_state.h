@@ -12,11 +12,7 @@
 namespace psf {
 
 struct Dump::State {
-  explicit State(const std::string& path) : dump(path) { describe(); }
-
-  void describe() {
-    channels.clear();
-    cameras.clear();
+  explicit State(const std::string& path) : dump(path) {
     for (const formats::Channel& channel : dump.reader().head().channels) {
       channels.push_back({channel.name, std::string(formats::name_of(channel.type)),
                           channel.components, channel.encoding == formats::Encoding::octahedral});

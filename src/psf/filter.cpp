@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/error.h"
 #include "filter/blocks.h"
@@ -115,7 +116,7 @@ void check_radius(const filter::Parameters& parameters, const filter::Records& r
     if (std::isfinite(camera.angle_per_pixel) && camera.angle_per_pixel > 0) continue;
     throw Error(
         ErrorCode::bad_input,
-        "a camera has no angle_per_pixel, which a radius in pixels and `estimator disk` need; "
+        "a camera has no angle_per_pixel, which a radius in pixels and estimators over areas need; "
         "give it, or the radius as a fraction of the distance, `r0 0.02`");
   }
 }
@@ -154,7 +155,7 @@ FilteredRecords filter_records(const Records& records, std::span<const Camera> c
 
   FilteredRecords result;
   filter::radii(chosen.radius, view, block, result.radius);
-  filter::Estimates average = filter::estimate(view, result.radius, block, chosen);
+  filter::Estimates estimates = filter::estimate(view, result.radius, block, chosen);
   std::vector<run::CameraPictures> pictures;
   for (const filter::CameraView& camera : views) {
     run::PictureLayers layers;
@@ -167,14 +168,14 @@ FilteredRecords filter_records(const Records& records, std::span<const Camera> c
     result.pictures.push_back(to_picture(pictures[k].image(), cameras[k].name));
   }
   result.c_bar.resize(3 * columns.size());
-  for (std::size_t i = 0; i < average.c_bar.size(); ++i) {
-    const Rgb& color = average.c_bar[i];
+  for (std::size_t i = 0; i < estimates.c_bar.size(); ++i) {
+    const Rgb& color = estimates.c_bar[i];
     result.c_bar[3 * i] = color.x;
     result.c_bar[3 * i + 1] = color.y;
     result.c_bar[3 * i + 2] = color.z;
   }
-  result.neighbors = std::move(average.neighbors);
-  if (!average.radius.empty()) result.radius = std::move(average.radius);
+  result.neighbors = std::move(estimates.neighbors);
+  if (!estimates.radius.empty()) result.radius = std::move(estimates.radius);
   return result;
 }
 

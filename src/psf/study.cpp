@@ -22,21 +22,31 @@
 namespace psf {
 namespace {
 
-// The sets for a dump: what it lacks is off where it was not asked for, as `notes` say.
-std::vector<filter::Parameters> fitted(const run::Dump& dump, std::span<const Parameters> sets,
-                                       std::vector<std::string>& notes) {
+std::vector<filter::Parameters> to_filter(std::span<const Parameters> sets) {
   std::vector<filter::Parameters> all;
-  for (const Parameters& set : sets) {
-    all.push_back(to_filter(set));
+  for (const Parameters& set : sets) all.push_back(psf::to_filter(set));
+  return all;
+}
+
+// Switches off in `rows`, which are `sets`, what the dump lacks and was not asked for, and says so
+// in `notes`. Throws where what was asked for is missing.
+void fit(const run::Dump& dump, std::span<const Parameters> sets,
+         std::vector<filter::Parameters>& rows, std::vector<std::string>& notes) {
+  for (std::size_t k = 0; k < rows.size(); ++k) {
     const std::string note =
-        run::switch_off_missing(dump, {&all.back(), 1}, filter::asked_terms(set.given()));
+        run::switch_off_missing(dump, {&rows[k], 1}, filter::asked_terms(sets[k].given()));
     if (!note.empty() && std::find(notes.begin(), notes.end(), note) == notes.end()) {
       notes.push_back(note);
     }
-    static_cast<void>(
-        dump.select(all.back(), false));  // throws where what was asked for is missing
+    static_cast<void>(dump.select(rows[k], false));
   }
-  return all;
+}
+
+std::vector<filter::Parameters> fitted(const run::Dump& dump, std::span<const Parameters> sets,
+                                       std::vector<std::string>& notes) {
+  std::vector<filter::Parameters> rows = to_filter(sets);
+  fit(dump, sets, rows, notes);
+  return rows;
 }
 
 void check_camera(const run::Dump& dump, std::size_t camera) {
@@ -94,9 +104,9 @@ std::string tune_radii() {
   return study::kTuneRadii;
 }
 
-std::vector<SweepRow> Dump::sweep(const Picture& reference, std::span<const Parameters> sets,
-                                  std::span<const std::string> metrics,
-                                  const FilterOptions& options, std::size_t camera) const {
+SweepResult Dump::sweep(const Picture& reference, std::span<const Parameters> sets,
+                        std::span<const std::string> metrics, const FilterOptions& options,
+                        std::size_t camera) const {
   const std::shared_lock reading(state_->mutex);
   check_reference(reference, state_->dump, camera);
   std::vector<metrics::Metric> measured;
@@ -104,9 +114,9 @@ std::vector<SweepRow> Dump::sweep(const Picture& reference, std::span<const Para
   if (measured.empty()) measured = {metrics::Metric::rel_mse};
   const metrics::Reference prepared(colors_of(reference), reference.width, {}, measured);
 
-  std::vector<std::string> notes;
-  const std::vector<filter::Parameters> rows = fitted(state_->dump, sets, notes);
-  std::vector<SweepRow> result(rows.size());
+  SweepResult result;
+  const std::vector<filter::Parameters> rows = fitted(state_->dump, sets, result.notes);
+  result.rows.resize(rows.size());
   study::SweepRequest request;
   request.rows = rows;
   request.passes = to_run(options.passes);
@@ -114,7 +124,7 @@ std::vector<SweepRow> Dump::sweep(const Picture& reference, std::span<const Para
   request.max_memory = options.max_memory;
   request.on_progress = options.on_progress;
   request.on_row = [&](std::size_t number, const study::SweepRow& row, const std::vector<Rgb>&) {
-    SweepRow& out = result[number];
+    SweepRow& out = result.rows[number];
     out.parameters = filter::describe(row.parameters);
     for (const metrics::Metric metric : measured) {
       out.errors.emplace_back(metrics::name(metric), row.metrics[metric]);
@@ -175,17 +185,12 @@ ConvergeResult converge(std::span<const std::string> dumps, const Picture& refer
   std::vector<study::RenderFigures> renders;
   for (const std::string& json : options.render_json) renders.push_back({"`render_json`", json});
   if (!renders.empty()) report.time = study::mean_render_time(renders);
-  std::vector<filter::Parameters> rows;
+  check_camera(first, options.camera);
+  study::check_replicates(dumps, run::last_pass(first, passes));
+  std::vector<filter::Parameters> rows = to_filter(sets);
   for (const std::string& path : dumps) {
     const run::Dump replicate(path);
-    // What any of them lacks is off for all.
-    std::vector<filter::Parameters> fit = fitted(replicate, sets, result.notes);
-    if (rows.empty()) rows = std::move(fit);
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      static_cast<void>(
-          run::switch_off_missing(replicate, {&rows[k], 1}, filter::asked_terms(sets[k].given())));
-    }
-    check_camera(replicate, options.camera);
+    fit(replicate, sets, rows, result.notes);  // what any of them lacks is off for all
     report.inputs.push_back(study::describe_input(replicate, passes, options.camera));
   }
   study::ConvergeRequest request;

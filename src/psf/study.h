@@ -22,12 +22,18 @@ namespace psf {
 // Name and text of every parameter.
 using ParameterTexts = std::vector<std::pair<std::string, std::string>>;
 
-// A row of Dump::sweep().
+// A row of Dump::sweep(): a set of parameters, and how far its picture is from the reference.
 struct SweepRow {
   ParameterTexts parameters;                           // of the row
   std::vector<std::pair<std::string, double>> errors;  // by metric
   double neighbors = 0;                                // mean over the queries
   double seconds = 0;                                  // of the traversal it shared
+};
+
+// What Dump::sweep() measured.
+struct SweepResult {
+  std::vector<SweepRow> rows;      // in the order of the sets
+  std::vector<std::string> notes;  // what was switched off, and why
 };
 
 // The radii that psf tune tries unless others are asked for, as a list for

@@ -49,18 +49,20 @@ py::list to_list(const std::vector<Row>& rows) {
   return list;
 }
 
-py::list sweep(const Dump& dump, const Picture& reference, const Texts& lists, bool no_weights,
-               const std::vector<std::string>& metrics, const PassRange& passes,
-               std::optional<std::uint64_t> max_memory, std::size_t camera,
-               const py::object& progress) {
+// Rows, notes.
+auto sweep(const Dump& dump, const Picture& reference, const Texts& lists, bool no_weights,
+           const std::vector<std::string>& metrics, const PassRange& passes,
+           std::optional<std::uint64_t> max_memory, std::size_t camera,
+           const py::object& progress) {
   const std::vector<Parameters> sets = Parameters::combinations(lists, no_weights);
-  return to_list(work_on(progress, [&](const auto& on_progress) {
+  const SweepResult result = work_on(progress, [&](const auto& on_progress) {
     FilterOptions options;
     options.passes = to_passes(passes);
     options.max_memory = max_memory;
     options.on_progress = on_progress;
     return dump.sweep(reference, sets, metrics, options, camera);
-  }));
+  });
+  return std::make_tuple(to_list(result.rows), result.notes);
 }
 
 // Figures, rows, the choice, notes.

@@ -34,7 +34,7 @@ class BlockLoop {
   // Visits every block of the selection that was not visited yet, but for a last one that more
   // passes would change. Returns whether there is such a one: visit_rest() visits it, as often as
   // it is called. Throws Error{interrupted}, and what Dump::read() and the visitor throw.
-  bool visit_whole(const Visitor& visit);
+  [[nodiscard]] bool visit_whole(const Visitor& visit);
   void visit_rest(const Visitor& visit);
 
   [[nodiscard]] std::uint64_t count() const { return blocks_->count(); }  // of the selection

@@ -1,6 +1,7 @@
 #include "run/noise_share.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -102,11 +103,13 @@ std::vector<NoiseShare> noise_shares(const Dump& dump, const PassSelection& pass
   blocks.set_last(last_pass(dump, passes), true);
   std::vector<NoiseMoments> moments;
   for (const filter::CameraView& camera : dump.cameras()) moments.emplace_back(camera);
-  blocks.visit_whole([&](const BlockLoop::Visit& visit) {
+  const bool more = blocks.visit_whole([&](const BlockLoop::Visit& visit) {
     filter::Statistics unused;
     const filter::Roles roles = filter::find_roles(visit.records, visit.block, parameters, unused);
     add_noise(visit.records, roles.of, 0, visit.records.size(), moments);
   });
+  assert(!more);  // blocks of a pass are whole
+  static_cast<void>(more);
   std::vector<NoiseShare> shares;
   shares.reserve(moments.size());
   for (const NoiseMoments& one : moments) shares.push_back(one.share(epsilon));

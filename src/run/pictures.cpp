@@ -16,9 +16,9 @@ CameraPictures::CameraPictures(const filter::CameraView& camera, const PictureLa
       albedo_(layers.albedo ? camera.width : 0, layers.albedo ? camera.height : 0),
       normal_(layers.normal ? camera.width : 0, layers.normal ? camera.height : 0) {}
 
-bool CameraPictures::add(const filter::Records& records, const filter::Estimates& average,
+bool CameraPictures::add(const filter::Records& records, const filter::Estimates& estimates,
                          std::span<const float> radius, std::size_t i) {
-  const filter::Role role = average.roles[i];
+  const filter::Role role = estimates.roles[i];
   if (role == filter::Role::left_out) return true;
   const std::uint32_t pixel = records.pixel[i];
   const Rgb u = unfiltered_of(records, i);
@@ -28,14 +28,14 @@ bool CameraPictures::add(const filter::Records& records, const filter::Estimates
     if (filter::is_input(role)) unfiltered_.add(pixel, u);
   } else {
     const Rgb& alpha = records.throughput[i];
-    const Rgb filtered = path_radiance(u, alpha, average.c_bar[i]);
+    const Rgb filtered = path_radiance(u, alpha, estimates.c_bar[i]);
     const bool source = role == filter::Role::source;
     const Rgb input = source ? path_radiance(u, alpha, records.contribution[i]) : filtered;
     if (!is_finite(filtered) || !is_finite(input)) return false;
     filtered_.add(pixel, filtered);
     if (source) unfiltered_.add(pixel, input);
-    const float r_i = average.radius.empty() ? radius[i] : average.radius[i];
-    details_.add(pixel, Rgb(static_cast<float>(average.neighbors[i]), r_i, 0));
+    const float r_i = estimates.radius.empty() ? radius[i] : estimates.radius[i];
+    details_.add(pixel, Rgb(static_cast<float>(estimates.neighbors[i]), r_i, 0));
   }
   add_guides(records, i, vertex);
   return true;
@@ -92,13 +92,13 @@ film::Image CameraPictures::image() const {
   return image;
 }
 
-std::uint64_t add_records(const filter::Records& records, const filter::Estimates& average,
+std::uint64_t add_records(const filter::Records& records, const filter::Estimates& estimates,
                           std::span<const float> radius, std::size_t first, std::size_t last,
                           std::span<CameraPictures> pictures) {
   std::vector<std::uint64_t> overflows(pixel_bands(), 0);
   for_each_by_pixel(records, first, last, [&](std::size_t band, std::size_t i) {
     const std::size_t camera = records.camera.empty() ? 0 : records.camera[i];
-    if (!pictures[camera].add(records, average, radius, i)) ++overflows[band];
+    if (!pictures[camera].add(records, estimates, radius, i)) ++overflows[band];
   });
   return std::accumulate(overflows.begin(), overflows.end(), std::uint64_t{0});
 }

@@ -25,7 +25,7 @@ class CameraPictures {
 
   // Adds record i of a filtered block [pixel]. Add the records of a pixel in path order, from one
   // thread. Returns false where the radiance overflows; then the path is left out.
-  bool add(const filter::Records& records, const filter::Estimates& average,
+  bool add(const filter::Records& records, const filter::Estimates& estimates,
            std::span<const float> radius, std::size_t i);
 
   // The picture with R, G, B, filtered, and those of these layers that were asked for:
@@ -52,7 +52,7 @@ class CameraPictures {
 // share the pixels, so the sums are the same for any number of threads. Returns how many paths were
 // left out because of an overflow.
 [[nodiscard]] std::uint64_t add_records(const filter::Records& records,
-                                        const filter::Estimates& average,
+                                        const filter::Estimates& estimates,
                                         std::span<const float> radius, std::size_t first,
                                         std::size_t last, std::span<CameraPictures> pictures);
 

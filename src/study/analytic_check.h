@@ -12,6 +12,8 @@
 
 namespace psf::study {
 
+inline constexpr double kSlopeTolerance = 0.1;  // the difference that a slope may have
+
 // Studies a scene over replicates, whose dumps are written to a folder of their own in `folder`,
 // which must exist, and removed in the end whatever happens. Of `sets`, r0 (in pixels) and delta
 // are used; blocks are of one pass, and there are no weights, as theory has it. The report has a

@@ -42,7 +42,7 @@ void check_replicates(const std::vector<run::Dump>& dumps, std::uint64_t passes)
       if (dumps[s].metadata().seed != dump.metadata().seed) continue;
       throw Error(ErrorCode::bad_input,
                   fmt::format("{}: has the seed {} of {}, so they are not independent; render it "
-                              "with --seed another",
+                              "with another, which the metadata name as \"seed\"",
                               path, dump.metadata().seed, dumps[s].reader().path()));
     }
   }
@@ -215,6 +215,13 @@ std::vector<std::uint64_t> powers_up_to(std::uint64_t passes) {
   for (std::uint64_t k = 1; k < passes; k *= 2) n.push_back(k);
   n.push_back(passes);
   return n;
+}
+
+void check_replicates(std::span<const std::string> dumps, std::uint64_t passes) {
+  std::vector<run::Dump> opened;
+  opened.reserve(dumps.size());
+  for (const std::string& path : dumps) opened.emplace_back(path);
+  check_replicates(opened, passes);
 }
 
 std::vector<ConvergeSeries> converge(std::span<const std::string> dumps,

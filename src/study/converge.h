@@ -53,11 +53,13 @@ struct ConvergeRequest {
 // The powers of two below `passes`: 1, 2, 4, ..., and then `passes` itself.
 [[nodiscard]] std::vector<std::uint64_t> powers_up_to(std::uint64_t passes);
 
+// Throws Error{bad_input} where the dumps have different scenes, cameras, or the same seed,
+// Error{usage} where one has fewer passes: what converge() throws before it works.
+void check_replicates(std::span<const std::string> dumps, std::uint64_t passes);
+
 // Runs a convergence study. `dumps`: the replicates, of one scene and with different seeds. The
 // first series returned is unfiltered; then there is one for each set, in their order. The picture
-// at n is what psf filter --passes 0:n gives. Throws Error{bad_input} where the dumps have
-// different cameras or the same seed, Error{usage} where one has too few passes, and what
-// filter_many() throws.
+// at n is what psf filter --passes 0:n gives. Throws what check_replicates() and filter_many() throw.
 [[nodiscard]] std::vector<ConvergeSeries> converge(std::span<const std::string> dumps,
                                                    const metrics::Reference& reference,
                                                    std::span<const Rgb> reference_picture,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/error.h"
 #include "run/median_around.h"
 #include "study/variants.h"
 
@@ -320,6 +321,9 @@ class Tuner {
 }  // namespace
 
 TuneResult tune(const run::Dump& dump, const TuneRequest& tune) {
+  if (!(std::isfinite(tune.epsilon) && tune.epsilon > 0)) {
+    throw Error(ErrorCode::usage, "`epsilon`: must be finite and above 0");
+  }
   return Tuner(dump, tune).run();
 }
 

@@ -128,7 +128,7 @@ TEST_CASE("a sweep measures every set as a filter run of its own does") {
   std::vector<psf::Parameters> sets;
   for (const char* r0 : {"0", "2px", "4px"}) sets.push_back(psf::Parameters().set("r0", r0));
   const std::vector<std::string> metrics = {"relMSE", "MSE"};
-  const std::vector<psf::SweepRow> rows = dump.sweep(reference, sets, metrics);
+  const std::vector<psf::SweepRow> rows = dump.sweep(reference, sets, metrics).rows;
   REQUIRE(rows.size() == 3);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const psf::Picture picture = dump.filter(sets[k]).pictures[0];

@@ -1,6 +1,7 @@
 // psf converge as a program: points are what psf filter gives, slopes are those of theory.
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -82,12 +83,41 @@ TEST_CASE("A convergence study refuses what are no replicates") {
   const Outcome few = study(folder / "a.pvb " + folder / "b.pvb");
   CHECK(few.code == 2);
   CHECK(few.err.find("passes") != std::string::npos);
+  json scene = json::parse(read_text(PSF_SOURCE_DIR "/sample_data/cornell.json"));
+  scene["cameras"].push_back(scene["cameras"][0]);
+  scene["cameras"][1]["name"] = "side";
+  std::ofstream(folder / "two.json") << scene;
+  const std::string two =
+      "psf-render " + folder / "two.json" + " --quiet --size 16x12 --passes 2 --camera ";
+  REQUIRE(run(two + "front --camera side -o " + folder / "both.pvb").code == 0);
+  REQUIRE(run(two + "front --seed 3 -o " + folder / "one.pvb").code == 0);
+  REQUIRE(run(two + "side --image " + folder / "b.exr").code == 0);
+  const Outcome fewer =  // the second dump does not even have the camera that is asked for
+      run("psf converge " + folder / "both.pvb " + folder / "one.pvb --quiet --camera side " +
+          "--reference " + folder / "b.exr -o " + folder / "out");
+  CHECK(fewer.code == 3);
+  CHECK(fewer.err.find("one.pvb: is of another scene or camera") != std::string::npos);
   const Outcome nothing = run("psf converge -o " + folder / "out");
   CHECK(nothing.code == 2);
   CHECK(nothing.err.find("--analytic") != std::string::npos);
   const Outcome ignored = run("psf converge --analytic --block 2passes -o " + folder / "out");
   CHECK(ignored.code == 2);
   CHECK(ignored.err.find("--block") != std::string::npos);
+}
+
+TEST_CASE("The built-in scenes overwrite nothing, and say so before they are studied") {
+  const TempFolder folder;
+  const std::string line = "psf converge --analytic -o " + folder / "out --json ";
+  const Outcome own = run(line + folder / "out/smooth/converge.json");
+  CHECK(own.code == 2);
+  CHECK_FALSE(std::filesystem::exists(folder / "out"));
+  CHECK(run(line + folder / "none/all.json").code == 4);
+  std::filesystem::create_directories(folder / "out/edge");
+  std::ofstream(folder / "out/edge/converge.json") << "mine";
+  const Outcome there = run(line + folder / "all.json");
+  CHECK(there.code == 2);
+  CHECK(there.err.find("is there already") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder / "out/smooth"));
 }
 
 TEST_CASE("On the built-in scenes the slopes are those of theory") {

@@ -1,6 +1,7 @@
 // Man pages, in the macros of man(7).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <iterator>
 #include <regex>
@@ -163,7 +164,7 @@ std::string exit_status() {
   const std::pair<int, const char*> codes[] = {
       {0, "Done."},
       {static_cast<int>(ErrorCode::comparison),
-       "A comparison or a verification failed; a file was saved with losses."},
+       "A comparison, a verification or a check of slopes failed; a file was saved with losses."},
       {static_cast<int>(ErrorCode::usage), "The command line is wrong."},
       {static_cast<int>(ErrorCode::bad_input),
        "A scene or a file is malformed, damaged or lacks something."},

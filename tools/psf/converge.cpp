@@ -1,6 +1,7 @@
 // psf converge: how the error falls as samples accumulate, with bias and variance apart.
 #include <fmt/format.h>
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "cli.h"
 #include "converge_report.h"
+#include "core/apart.h"
 #include "core/error.h"
 #include "core/json_text.h"
 #include "core/output_file.h"
@@ -101,6 +103,7 @@ void run_dumps(const ConvergeOptions& options) {
   if (folder.passes().first != 0) {
     throw Error(ErrorCode::usage, "--passes: a convergence study begins with the first pass");
   }
+  study::check_replicates(options.inputs, run::last_pass(dump, folder.passes()));
   const metrics::Reference reference(
       folder.reference_picture(), folder.width(), folder.metric_options(),
       options.all_metrics ? std::span<const metrics::Metric>(metrics::kAllMetrics)
@@ -136,12 +139,30 @@ void run_dumps(const ConvergeOptions& options) {
   print_and_write(options, folder.path(), report);
 }
 
+constexpr std::array kAnalyticScenes = {study::AnalyticScene::smooth, study::AnalyticScene::edge};
+
+std::string analytic_folder(const ConvergeOptions& options, study::AnalyticScene scene) {
+  return (std::filesystem::path(options.study.folder) / study::Analytic(scene).name()).string();
+}
+
+// Before any work: what is there stays, and --json is none of the tables.
+void check_analytic_files(const ConvergeOptions& options) {
+  std::vector<std::string> outputs = {options.common.json};
+  for (const study::AnalyticScene scene : kAnalyticScenes) {
+    const std::string folder = analytic_folder(options, scene);
+    refuse_to_overwrite(folder);
+    for (const char* name : {"converge.json", "converge.csv"}) {
+      outputs.push_back((std::filesystem::path(folder) / name).string());
+    }
+  }
+  core::check_apart({}, outputs);
+  check_files({}, {options.common.json});
+}
+
 study::ConvergeReport run_analytic(const ConvergeOptions& options, study::AnalyticScene scene,
                                    std::span<const filter::Parameters> sets) {
-  const std::string name = study::Analytic(scene).name();
-  const std::string folder = (std::filesystem::path(options.study.folder) / name).string();
+  const std::string name = study::Analytic(scene).name(), folder = analytic_folder(options, scene);
   std::filesystem::create_directories(folder);
-  refuse_to_overwrite(folder);
   core::Progress progress(name, options.common.quiet);
   study::ConvergeReport report = study::check_analytic(
       scene, sets, folder,
@@ -170,9 +191,10 @@ void run(const ConvergeOptions& options) {
     if (options.lists.given.contains(name)) lists.given[name] = options.lists.given.at(name);
   }
   const std::vector<filter::Parameters> sets = all_sets(lists);
+  check_analytic_files(options);
   bool passed = true;
   study::Json figures;
-  for (const auto scene : {study::AnalyticScene::smooth, study::AnalyticScene::edge}) {
+  for (const study::AnalyticScene scene : kAnalyticScenes) {
     const study::ConvergeReport report = run_analytic(options, scene, sets);
     figures[study::Analytic(scene).name()] = study::to_json(report);
     for (const study::SlopeCheck& check : report.checks) passed = passed && check.passed;
@@ -180,7 +202,8 @@ void run(const ConvergeOptions& options) {
   if (!options.common.json.empty()) core::write_json_file(options.common.json, figures, 1);
   if (!passed) {
     throw Error(ErrorCode::comparison,
-                "--analytic: a slope is off its theory by more than 0.1; see the table");
+                fmt::format("--analytic: a slope is off its theory by more than {}; see the table",
+                            study::kSlopeTolerance));
   }
 }
 

@@ -111,7 +111,8 @@ void add_explain(CLI::App& app) {
                                   "this one path instead, by its number in the dump")
                      ->type_name("I"));
   command->add_option("--camera", options.camera, "of a dump of several: the pixel is this one's")
-      ->type_name("NAME");
+      ->type_name("NAME")
+      ->excludes("--path");
   command->add_option("--passes", options.passes, kPassesHelp)->type_name("FIRST:LAST");
   command->add_option("--top", options.top, "rows of each table")->capture_default_str();
   command->add_flag("--all", options.all, "all rows, and every path's vertex")->excludes("--top");

@@ -24,7 +24,7 @@ constexpr Refusal kControlRefusals[] = {
      "`refusals`: the balls of `estimator control` hold halves; count with `estimator average`"},
 };
 
-constexpr EstimatorInfo kEstimators[] = {
+constexpr EstimatorInfo kEstimators[kEstimatorCount] = {
     {.name = "average", .meaning = "", .shares_traversal = true},
     {.name = "disk",
      .meaning = "photon mapping's",

@@ -18,6 +18,8 @@ enum class Estimator : std::uint8_t {
   adaptive  // [adaptive]: [average] in the largest ball whose contributions agree
 };
 
+inline constexpr std::size_t kEstimatorCount = 5;
+
 struct Parameters;
 
 // What does not go with an estimator.

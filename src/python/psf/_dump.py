@@ -128,9 +128,10 @@ class Dump:
             reference = read_picture(reference)
         names = [metrics] if isinstance(metrics, str) else list(metrics)
         with shown(progress, "sweep") as report:
-            rows = self._dump.sweep(reference._picture, lists(parameters), no_weights, names,
+            rows, notes = self._dump.sweep(reference._picture, lists(parameters), no_weights, names,
                                     pass_range(passes, self.passes), max_memory,
                                     camera_number(self, camera), report)
+        warn(notes)
         return [with_underscores(row) for row in rows]
 
     def tune(self, *, camera: str | None = None, passes: Passes = None, epsilon: float = 0.01,

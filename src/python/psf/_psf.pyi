@@ -109,7 +109,7 @@ class Dump:
         max_memory: int | None,
         camera: int,
         progress: Callable[[int, int], object] | None,
-    ) -> list[dict[str, Any]]: ...
+    ) -> tuple[list[dict[str, Any]], list[str]]: ...
     def tune(
         self,
         lists: Mapping[str, str],

@@ -121,8 +121,6 @@ std::vector<std::string> write_images(const Job& job, const Scene& scene,
   return images;
 }
 
-}  // namespace
-
 void check_names(const Job& job) {
   if (!job.output.empty() && std::filesystem::path(job.output).extension() != ".pvb") {
     throw Error(ErrorCode::usage,
@@ -131,6 +129,8 @@ void check_names(const Job& job) {
   for (const std::string& image : job.images) film::check_image_path(image);
   static_cast<void>(record_channels(job.settings.channels));
 }
+
+}  // namespace
 
 JobResult run_job(const Job& asked) {
   check_names(asked);

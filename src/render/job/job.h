@@ -45,8 +45,6 @@ struct JobResult {
 // load_scene(), validate() and render() throw.
 [[nodiscard]] JobResult run_job(const Job& job);
 
-// Throws Error{usage} for what run_job() refuses before it loads anything.
-void check_names(const Job& job);
 // Throws Error{interrupted} that says what is kept, where ^C stopped the job.
 void throw_if_stopped(const Job& job, const JobResult& result);
 
