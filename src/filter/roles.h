@@ -30,8 +30,8 @@ enum class Role : std::uint8_t {
 
 struct Roles {
   std::vector<Role> of;  // role of each record
-  std::vector<std::uint32_t> queries,
-      sources;  // record numbers, ascending; sources are queries too
+  // Record numbers, ascending; sources are queries too.
+  std::vector<std::uint32_t> queries, sources;
 };
 
 // Finds the role of each record, and looks only at the channels that `parameters` use. hit_distance

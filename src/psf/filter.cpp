@@ -163,7 +163,7 @@ FilteredRecords filter_records(const Records& records, std::span<const Camera> c
     layers.normal = !view.normal.empty();
     pictures.emplace_back(camera, layers);
   }
-  static_cast<void>(run::add_records(view, average, result.radius, 0, columns.size(), pictures));
+  static_cast<void>(run::add_records(view, estimates, result.radius, 0, columns.size(), pictures));
   for (std::size_t k = 0; k < pictures.size(); ++k) {
     result.pictures.push_back(to_picture(pictures[k].image(), cameras[k].name));
   }

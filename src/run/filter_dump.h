@@ -21,13 +21,13 @@ struct FilterRequest {
   filter::Parameters parameters;
   PassSelection passes;  // treated as a dump of their own, but blocks of b^m stay in place
   PictureLayers layers;
-  std::vector<std::uint64_t>
-      snapshots;  // numbers of passes after which pictures are wanted, ascending, each >= 1
+  // Numbers of passes after which pictures are wanted, ascending, each at least 1.
+  std::vector<std::uint64_t> snapshots;
   // Called for each snapshot, with the pictures of the first `passes` passes, one per camera. Each
   // path is filtered with its whole block.
   std::function<void(std::uint64_t passes, std::span<const CameraPictures>)> on_snapshot;
-  std::function<void(std::uint64_t done, std::uint64_t total)>
-      on_progress;  // called after every block; counts paths
+  // Called after every block, with numbers of paths.
+  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress;
   // The limit in bytes for the estimate of memory.h; not set: none. Where reading ahead would
   // exceed it, blocks are not read ahead, which is slower and gives the same pictures.
   std::optional<std::uint64_t> max_memory;
