@@ -114,10 +114,13 @@ void check_radius(const filter::Parameters& parameters, const filter::Records& r
   if (!filter::needs_angle(parameters)) return;
   for (const Camera& camera : cameras) {
     if (std::isfinite(camera.angle_per_pixel) && camera.angle_per_pixel > 0) continue;
-    throw Error(
-        ErrorCode::bad_input,
-        "a camera has no angle_per_pixel, which a radius in pixels and estimators over areas need; "
-        "give it, or the radius as a fraction of the distance, `r0 0.02`");
+    const bool by_radius = parameters.radius.basis == filter::RadiusBasis::footprint;
+    throw Error(ErrorCode::bad_input,
+                by_radius ? "a camera has no angle_per_pixel, which a radius in pixels needs; give "
+                            "it, or the radius as a fraction of the distance, `r0 0.02`"
+                          : fmt::format("a camera has no angle_per_pixel, which `estimator {}` "
+                                        "needs; give it, or `estimator average`",
+                                        filter::info(parameters.estimator).name));
   }
 }
 

@@ -31,7 +31,8 @@ CASES = [
     ("psf filter --normal 0.9 du", "dump.pvb"),
     ("psf filter folder/in", "folder/inner.pvb"),
     ("psf info a\\ d", "a dump.pvb"),
-    ("psf filter dump.pvb -o wi", "wide.txt"),
+    ("psf filter dump.pvb -o pict", "picture.exr"),  # not picture.pvb
+    ("psf filter dump.pvb --json wi", "wide.txt"),
     ("psf cat dump.pvb du", "dump.pvb"),
     ("psf cat --codec z", "zstd"),
     ("psf compare --metric SS", "SSIM"),
