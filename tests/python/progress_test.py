@@ -133,6 +133,37 @@ class Progress(unittest.TestCase):
         self.assertIn("100%", updated[-1])
         self.assertTrue(all(line.startswith("work: ") for line in shown + updated))
 
+    def test_the_time_runs_from_the_call(self) -> None:
+        out, now = Terminal(), 0.0
+
+        class Tqdm:
+            def __init__(self, **arguments: object) -> None:
+                self.start_t = 1000.0
+                starts.append(self)
+
+            def update(self, n: int) -> None:
+                pass
+
+            def close(self) -> None:
+                pass
+
+        starts = []
+        with mock.patch("sys.stderr", out), mock.patch("time.monotonic", lambda: now):
+            for progress in (True, Tqdm):
+                with _progress.shown(progress, "work") as report:
+                    now += 30
+                    report(5, 10)
+        self.assertIn("[00:30<00:30, ", out.getvalue())
+        self.assertEqual(starts[0].start_t, 970)
+
+    def test_without_a_console_a_bar_says_nothing(self) -> None:
+        now = 0.0
+        with mock.patch("sys.stderr", None), mock.patch("time.monotonic", lambda: now):
+            with _progress.shown(True, "work") as report:
+                for k in range(4):
+                    now += 20
+                    report(k, 3)
+
     def test_numbers_are_short(self) -> None:
         for count, text in ((0, "0"), (999, "999"), (1000, "1k"), (1048576, "1.05M"),
                             (65536, "65.5k"), (999999, "1M"), (2.5e9, "2.5G"), (1e12, "1T")):

@@ -46,12 +46,12 @@ class Bar:
     """A bar with the arguments and methods of tqdm's that are needed here."""
 
     def __init__(self, desc: str, total: int, unit: str = "it", unit_scale: bool = True,
-                 delay: float = 0) -> None:
+                 delay: float = 0, start: float | None = None) -> None:
         self._desc, self._total, self._unit = desc, total, unit
-        self._n, self._start = 0, time.monotonic()
-        self._out: TextIO = sys.stderr
+        self._n, self._start = 0, time.monotonic() if start is None else start
+        self._out: TextIO | None = sys.stderr  # None where there is no console
         self._display, self._shown = _notebook(), None
-        self._terminal = self._display is None and self._out.isatty()
+        self._terminal = self._display is None and self._out is not None and self._out.isatty()
         self._between = _REDRAW if self._display is not None or self._terminal else _LOG
         self._next = self._start + max(delay, 0 if self._terminal or self._display else _LOG)
         self._drawn = False
@@ -67,7 +67,7 @@ class Bar:
         """Leaves the last line there, as it is."""
         if self._drawn:
             self._draw()
-            if self._terminal:
+            if self._terminal and self._out is not None:
                 self._out.write("\n")
         self._drawn = False
 
@@ -85,7 +85,7 @@ class Bar:
         full, rest = divmod(eighths, 8)
         bar = "█" * full + (" ▏▎▍▌▋▊▉"[rest] if rest else "")
         try:
-            bar.encode(self._out.encoding or "ascii")
+            bar.encode("utf-8" if self._out is None else self._out.encoding or "ascii")
         except UnicodeError:
             bar = "#" * full
         return before + bar.ljust(room) + after
@@ -98,6 +98,8 @@ class Bar:
                 self._shown = self._display(show, raw=True, display_id=True)
             else:
                 self._shown.update(show, raw=True)
+            return
+        if self._out is None:
             return
         line = self.line(shutil.get_terminal_size().columns - 1 if self._terminal else 100)
         self._out.write(f"\r{line}\033[K" if self._terminal else line + "\n")
@@ -114,15 +116,18 @@ def shown(progress: Progress, what: str) -> Iterator[Callable[[int, int], object
         yield progress
         return
     bar: Any = None
-    before = 0
+    before, start = 0, time.monotonic()
 
     def report(done: int, total: int) -> None:
         nonlocal bar, before
         if bar is None:
             if isinstance(progress, type):
                 bar = progress(desc=what, total=total, unit="path", unit_scale=True)
+                if hasattr(bar, "start_t"):  # tqdm's, by a clock of its own
+                    bar.start_t -= time.monotonic() - start
             else:
-                bar = Bar(what, total, "path", delay=_MOMENT if progress is None else 0)
+                bar = Bar(what, total, "path", delay=_MOMENT if progress is None else 0,
+                          start=start)
         bar.update(done - before)
         before = done
 
