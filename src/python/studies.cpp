@@ -1,9 +1,14 @@
 // Studies of dumps: sweep, tune, converge, explain. Figures are the JSON of the commands.
 #include <pybind11/stl.h>
 
+#include <filesystem>
 #include <tuple>
+#include <utility>
 #include <vector>
 
+#include "core/apart.h"
+#include "core/error.h"
+#include "core/output_file.h"
 #include "module.h"
 
 namespace psf::python {
@@ -104,11 +109,40 @@ Explanation explain(const Dump& dump, const std::optional<Pixel>& pixel, std::ui
   });
 }
 
+// Writes each text to its file, whole or not at all, and none over one of `inputs`.
+void write_files(const std::vector<std::string>& inputs,
+                 const std::vector<std::pair<std::string, std::string>>& texts) {
+  std::vector<std::string> paths;
+  for (const auto& text : texts) paths.push_back(text.first);
+  core::check_files(inputs, paths);
+  for (const auto& [path, text] : texts) core::write_text_file(path, text);
+}
+
+// The files of psf converge -o, in a folder that is made, unless a study is there already.
+void write_convergence(const std::vector<std::string>& inputs, const std::string& folder,
+                       const std::string& json, const std::string& csv) {
+  const std::filesystem::path path(folder);
+  const std::string json_path = (path / "converge.json").string();
+  const std::string csv_path = (path / "converge.csv").string();
+  core::check_apart(inputs, std::vector{json_path, csv_path});
+  std::error_code error;
+  if (std::filesystem::exists(json_path, error)) {
+    throw Error(ErrorCode::usage, json_path + ": is there already; give another folder");
+  }
+  std::filesystem::create_directories(path, error);
+  if (std::error_code other; !std::filesystem::is_directory(path, other)) {
+    throw Error(ErrorCode::io, folder + ": cannot be made as a folder: " + error.message());
+  }
+  write_files(inputs, {{csv_path, csv}, {json_path, json}});
+}
+
 }  // namespace
 
 void bind_studies(py::module_& m, py::class_<Dump>& dump) {
   dump.def("sweep", sweep).def("tune", tune).def("explain", explain);
   m.def("converge", converge);
+  m.def("write_files", write_files, py::call_guard<py::gil_scoped_release>());
+  m.def("write_convergence", write_convergence, py::call_guard<py::gil_scoped_release>());
   py::class_<Explanation>(m, "Explanation")
       .def("text", &Explanation::text)
       .def("whole_text", &Explanation::whole_text)

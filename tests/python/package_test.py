@@ -14,12 +14,14 @@ import threading
 import time
 import unittest
 import warnings
+from pathlib import Path
 
 import numpy as np
 
 from support import PACKAGE, SAMPLES, content, run
 
 import psf
+from psf import _values
 
 
 class Package(unittest.TestCase):
@@ -137,7 +139,7 @@ class Package(unittest.TestCase):
                     "distance": "f4", "pixel": "u4", "my.code": ("u2", 2)}
         columns = dict(position=x, throughput=np.ones((8, 3)), contribution=x, distance=np.ones(8),
                        pixel=np.arange(8))
-        with psf.create(path, [camera], channels, metadata={"scene": "made"}) as writer:
+        with psf.create(Path(path), [camera], channels, metadata={"scene": "made"}) as writer:
             for k in range(3):
                 writer.append(**columns, **{"my.code": np.full((8, 2), k)})
                 writer.commit_pass()
@@ -203,6 +205,40 @@ class Package(unittest.TestCase):
                 dump.filter(passes=wrong)
         with self.assertRaisesRegex(KeyError, "has no camera nobody"):
             dump.filter("nobody")
+
+    def test_values_keep_their_digits_and_others_are_named(self) -> None:
+        self.assertEqual(_values.texts({"seed": (1 << 64) - 1, "r_min": 1 / 3, "a_b": np.uint64(1 << 63)}),
+                         {"seed": "18446744073709551615", "r-min": "0.33333333333333331",
+                          "a-b": "9223372036854775808"})
+        self.assertEqual(_values.lists({"x": np.array([1, 2]), "y": np.array(0.5), "z": True}),
+                         {"x": "1,2", "y": "0.5", "z": "on"})
+        dump = psf.open(self.path)
+        for call, error, text in (
+                (lambda: dump.filter(r0=[8]), TypeError, r"r0: expected a number, text, .* not \[8\]"),
+                (lambda: dump.filter(delta=np.zeros((9, 9))), TypeError, "delta: expected a number"),
+                (lambda: dump.filter(passes="0:2"), TypeError, "passes: expected a whole number"),
+                (lambda: dump.filter(passes=slice("0", "2")), TypeError, "passes: expected a slice"),
+                (lambda: dump.filter(max_memory="1G"), TypeError, "max_memory: expected .* not '1G'"),
+                (lambda: dump.filter(max_memory=-1), ValueError, "max_memory: -1 is no whole number"),
+                (lambda: dump.filter().save(None), TypeError, "path: expected a file name, not None"),
+                (lambda: dump.filter().error(5), TypeError, "reference: expected a psf.Picture or"),
+                (lambda: psf.open(5), TypeError, "path: expected a file name, not 5"),
+                (lambda: psf.read_picture([]), TypeError, "path: expected a file name"),
+                (lambda: psf.create(5, [], {}), TypeError, "path: expected a file name")):
+            with self.assertRaisesRegex(error, "^" + text) as raised:
+                call()
+            self.assertNotIn("\n", str(raised.exception))
+
+    def test_paths_are_file_names(self) -> None:
+        dump = psf.open(Path(self.path))
+        self.assertEqual(dump.path, self.path)
+        picture = dump.filter()
+        picture.save(Path(self.file("path.exr")))
+        again = psf.read_picture(Path(self.file("path.exr")))
+        self.assertEqual(picture.error(Path(self.file("path.exr"))), 0)
+        self.assertTrue(np.array_equal(again.rgb, picture.rgb))
+        dump.explain((0, 0)).save(Path(self.file("path.json")))
+        self.assertEqual(len(dump.sweep(Path(self.reference), metrics=(m for m in ["MSE"]))), 1)
 
     def test_records_of_another_shape_are_refused(self) -> None:
         camera = psf.Camera("above", 2, 2, 0.1)

@@ -12,6 +12,7 @@ import tempfile
 import threading
 import unittest
 import warnings
+from pathlib import Path
 
 import numpy as np
 
@@ -81,6 +82,32 @@ class Render(unittest.TestCase):
         self.assertEqual(content(self.file("p.exr")), content(self.file("c.exr")))
         self.assertTrue(np.array_equal(picture.rgb, psf.read_picture(self.file("c.exr")).rgb))
         self.assertEqual(os.listdir(self.folder.name).count("p.pvb"), 0)
+
+    def test_a_picture_that_cannot_be_read_back_is_refused_before(self) -> None:
+        for path, settings, error, text in (
+                (self.file("p.png"), {}, psf.Error, ".*p.png: the picture is read back"),
+                ([self.file("p.exr")], {}, TypeError, "path: expected a file name"),
+                (self.file("p.exr"), {"camera": "all"}, psf.Error, "camera: .* of one camera"),
+                (self.file("p.exr"), {"camera": ["a", "b"]}, psf.Error, "camera: .* of one camera")):
+            with self.assertRaisesRegex(error, "^" + text):
+                psf.render_picture(CORNELL, path, size=(8, 8), passes=1, **settings)
+        self.assertEqual(os.listdir(self.folder.name), [])
+
+    def test_names_and_lists_are_taken_as_the_command_takes_them(self) -> None:
+        dump = psf.render(Path(CORNELL), Path(self.file("p.pvb")), size=(s for s in (4, 4)), passes=1,
+                          channels="normal,hit_distance", image=Path(self.file("p.exr")))
+        names = {one.name for one in dump.channels}
+        self.assertEqual(names & {"normal", "hit_distance", "visibility"}, {"normal", "hit_distance"})
+        psf.render(CORNELL, size=(4, 4), passes=1, image=(self.file(f"{k}.exr") for k in range(2)))
+        picture = psf.render_picture(Path(CORNELL), Path(self.file("p.exr")), size=(4, 4), passes=1,
+                                     seed=(1 << 63) + 1)
+        self.assertEqual((picture.width, len(os.listdir(self.folder.name))), (4, 4))
+        for settings, text in ((dict(size={"w": 4}), "size: expected a number"),
+                               (dict(image=[5]), "image: expected a file name"),
+                               (dict(output=5), "output: expected a file name"),
+                               (dict(scene=None), "scene: expected a file name")):
+            with self.assertRaisesRegex(TypeError, "^" + text):
+                psf.render(**{"scene": CORNELL, **settings})
 
     def test_a_render_goes_on(self) -> None:
         path = self.file("a.pvb")

@@ -9,6 +9,8 @@ import os
 import tempfile
 import unittest
 import warnings
+from collections.abc import Callable
+from pathlib import Path
 
 from support import CORNELL, content, run
 
@@ -79,8 +81,76 @@ class Studies(unittest.TestCase):
                              renders=[self.paths[0] + ".json", figures])
         self.assertEqual(study["n"], [1, 2, 4])
         self.assertEqual([gain["n"] for gain in study["speedups"]], [1, 2, 4])
-        with self.assertRaisesRegex(psf.Error, "render_json: has no number 'passes'"):
+        with self.assertRaisesRegex(psf.Error, "renders: has no number 'passes'"):
             psf.converge(self.paths, self.reference, r0="4px", renders=[{"seconds": 1}])
+
+    def test_what_is_saved_is_whole_and_over_nothing(self) -> None:
+        dump = psf.open(self.paths[0])
+        before = content(self.paths[0])
+        tuning = dump.tune(r0=["4px", "8px"])
+        study = psf.converge(dump, self.reference, r0="4px", times=False)
+        os.makedirs(self.file("linked"))
+        os.symlink(self.paths[0], self.file("linked/converge.csv"))
+        study.save(Path(self.file("once")))
+        with open(self.file("a-file"), "w", encoding="utf-8"):
+            pass
+        for call, code, text in (
+                (lambda: tuning.save(self.paths[0]), 2, "writing it would overwrite the input"),
+                (lambda: study.save(self.file("linked")), 2, "writing it would overwrite the input"),
+                (lambda: study.save(self.file("once")), 2, "converge.json: is there already"),
+                (lambda: study.save(self.file("a-file")), 4, "cannot be made as a folder"),
+                (lambda: tuning.save(self.file("none/tune.json")), 4, "none")):
+            self.fails(call, code, text)
+        self.assertEqual(content(self.paths[0]), before)
+        self.assertEqual(os.listdir(self.file("linked")), ["converge.csv"])
+        tuning.save(Path(self.file("once.json")))
+        tuning.save(self.file("once.json"))  # over a file that is no input
+
+    def test_one_is_as_good_as_a_list_of_one(self) -> None:
+        figures = self.paths[0] + ".json"
+        with open(figures, encoding="utf-8") as file:
+            loaded = json.load(file)
+        study = psf.converge([self.paths[0]], self.reference, r0="4px", renders=[figures])
+        for dumps, renders in ((self.paths[0], figures), (Path(self.paths[0]), Path(figures)),
+                               (psf.open(self.paths[0]), loaded),
+                               ((path for path in self.paths[:1]), (one for one in [loaded]))):
+            same = psf.converge(dumps, Path(self.reference), r0=(r for r in ["4px"]), renders=renders)
+            self.assertEqual(same["inputs"], study["inputs"])
+            self.assertEqual(len(same["speedups"]), len(study["speedups"]))
+        with self.assertRaisesRegex(TypeError, "^renders: None, .* not rendered here"):
+            psf.converge(self.paths, self.reference, renders=[psf.open(self.paths[0]).rendered])
+        for text in ("{}", "not JSON"):
+            with open(self.file("wrong.json"), "w", encoding="utf-8") as file:
+                file.write(text)
+            self.fails(lambda: psf.converge(self.paths, self.reference, renders=[
+                figures, self.file("wrong.json")]), 3, "wrong.json: has no number 'passes'")
+        self.fails(lambda: psf.converge(self.paths, self.reference, renders="none.json"), 4,
+                   "none.json: cannot be read")
+
+    def test_arguments_of_other_types_are_named(self) -> None:
+        dump = psf.open(self.paths[0])
+        for call, error, text in (
+                (lambda: dump.explain((-1, 1)), ValueError, "pixel: -1 is no whole number"),
+                (lambda: dump.explain((1, 2, 3)), TypeError, r"pixel: expected \(x, y\)"),
+                (lambda: dump.explain("corner"), TypeError, "pixel: expected a whole number"),
+                (lambda: dump.explain(path=-1), ValueError, "path: -1 is no whole number"),
+                (lambda: dump.tune(epsilon="1%"), TypeError, "epsilon: expected a number"),
+                (lambda: dump.tune(r0={"4px": 1}), TypeError, "r0: expected a number, text"),
+                (lambda: dump.sweep(None), TypeError, "reference: expected a psf.Picture or a file"),
+                (lambda: dump.sweep(self.reference, metrics=5), psf.Error, '.*"5"'),
+                (lambda: psf.converge([5], self.reference), TypeError, "path: expected a file name"),
+                (lambda: psf.converge([dump, 5], self.reference), TypeError, "dumps: expected a file"),
+                (lambda: psf.converge(dump, self.reference, passes="4"), TypeError, "passes: expected"),
+                (lambda: psf.converge(dump, self.reference, renders=5), TypeError, "renders: expected")):
+            with self.assertRaisesRegex(error, "^" + text) as raised:
+                call()
+            self.assertNotIn("\n", str(raised.exception))
+
+    def fails(self, call: Callable[[], object], code: int, text: str) -> None:
+        with self.assertRaises(psf.Error) as raised:
+            call()
+        self.assertEqual(raised.exception.code, code, raised.exception)
+        self.assertIn(text, str(raised.exception))
 
     def test_explain_says_what_the_command_says(self) -> None:
         dump = psf.open(self.paths[0])

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 import numpy.typing as npt
 
 from psf import _psf
-from psf._picture import Picture, read_picture
+from psf._picture import Picture, as_picture
 from psf._progress import Progress, shown
 from psf._psf import Camera, Channel
 from psf._studies import Explanation, Tuning, camera_number, warn
-from psf._values import Passes, Value, lists, pass_range, texts, with_underscores
+from psf._values import (FileName, Passes, Value, file_name, items, lists, pass_range, real, text,
+                         texts, whole, whole_or_none, with_underscores, wrong)
 
 
 class _Column:
@@ -50,8 +51,8 @@ class Dump:
     ``rendered``: the figures of psf.render(), where that made the dump.
     """
 
-    def __init__(self, path: str) -> None:
-        self._dump = _psf.Dump(path)
+    def __init__(self, path: FileName) -> None:
+        self._dump = _psf.Dump(file_name("path", path))
         self.rendered: dict[str, Any] | None = None
 
     @property
@@ -101,7 +102,8 @@ class Dump:
         """What ``psf filter`` does: a picture of every camera."""
         with shown(progress, "filter") as report:
             result = self._dump.filter(texts(parameters), no_weights,
-                                       pass_range(passes, self.passes), max_memory, report)
+                                       pass_range(passes, self.passes),
+                                       whole_or_none("max_memory", max_memory), report)
         warn(result.notes)
         return [Picture(picture) for picture in result.take_pictures()]
 
@@ -114,7 +116,7 @@ class Dump:
                                    progress=progress, **parameters)
         return pictures[number]
 
-    def sweep(self, reference: Picture | str, *, metrics: str | Sequence[str] = "relMSE",
+    def sweep(self, reference: Picture | FileName, *, metrics: str | Iterable[str] = "relMSE",
               camera: str | None = None, passes: Passes = None, max_memory: int | None = None,
               no_weights: bool = False, progress: Progress = None,
               **parameters: Value | Iterable[Value]) -> list[dict[str, Any]]:
@@ -124,13 +126,13 @@ class Dump:
         ``seconds``; pandas.DataFrame(rows) takes it. Sets that differ in r0 and delta alone share
         the work. A list may be text, as of the command: r0="2px:32px:x2".
         """
-        if isinstance(reference, str):
-            reference = read_picture(reference)
-        names = [metrics] if isinstance(metrics, str) else list(metrics)
+        picture = as_picture("reference", reference)._picture
+        names = [text("metrics", one) for one in items(metrics)]
         with shown(progress, "sweep") as report:
-            rows, notes = self._dump.sweep(reference._picture, lists(parameters), no_weights, names,
-                                    pass_range(passes, self.passes), max_memory,
-                                    camera_number(self, camera), report)
+            rows, notes = self._dump.sweep(picture, lists(parameters), no_weights, names,
+                                           pass_range(passes, self.passes),
+                                           whole_or_none("max_memory", max_memory),
+                                           camera_number(self, camera), report)
         warn(notes)
         return [with_underscores(row) for row in rows]
 
@@ -144,11 +146,12 @@ class Dump:
             picture = dump.filter(**tuning.best)
         """
         with shown(progress, "tune") as report:
-            text, rows, best, notes = self._dump.tune(
+            figures, rows, best, notes = self._dump.tune(
                 lists(parameters), no_weights, pass_range(passes, self.passes),
-                camera_number(self, camera), epsilon, max_memory, report)
+                camera_number(self, camera), real("epsilon", epsilon),
+                whole_or_none("max_memory", max_memory), report)
         warn(notes)
-        return Tuning(text, rows, best)
+        return Tuning(figures, rows, best, [self.path])
 
     def explain(self, pixel: tuple[int, int] | None = None, *, path: int | None = None,
                 camera: str | None = None, passes: Passes = None, no_weights: bool = False,
@@ -160,8 +163,15 @@ class Dump:
         """
         if (pixel is None) == (path is None):
             raise TypeError("explain: give a pixel (x, y) or a path")
+        place = None
+        if pixel is not None:
+            pair = [whole("pixel", one, 1 << 32) for one in items(pixel)]
+            if len(pair) != 2:
+                raise wrong("pixel", "(x, y)", pixel)
+            place = pair[0], pair[1]
+        number = whole("path", path or 0)
         with shown(progress, "explain") as report:
-            explained = self._dump.explain(pixel, path or 0, texts(parameters), no_weights,
+            explained = self._dump.explain(place, number, texts(parameters), no_weights,
                                            pass_range(passes, self.passes),
                                            camera_number(self, camera), report)
         warn(explained.notes())
@@ -171,6 +181,6 @@ class Dump:
         return f"<psf.Dump {self.path}: {self.passes} passes, {self.records} records>"
 
 
-def open(path: str) -> Dump:
+def open(path: FileName) -> Dump:
     """Opens a path-vertex buffer."""
     return Dump(path)

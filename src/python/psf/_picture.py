@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from psf import _psf
+from psf._values import FileName, file_name, real, wrong
 
 
 class Picture:
@@ -61,19 +62,17 @@ class Picture:
         """The mean radius in world units, (height, width)."""
         return self["radius.Y"]
 
-    def error(self, reference: Picture | str, metric: str = "relMSE") -> float:
+    def error(self, reference: Picture | FileName, metric: str = "relMSE") -> float:
         """The error against a reference, a picture or an EXR file, by a metric of ``metrics()``."""
-        if isinstance(reference, str):
-            reference = read_picture(reference)
-        return self._picture.error(reference._picture, metric)
+        return self._picture.error(as_picture("reference", reference)._picture, metric)
 
-    def save(self, path: str) -> None:
+    def save(self, path: FileName) -> None:
         """Writes an EXR with all layers, or a PNG to look at: the bytes of ``psf filter -o``."""
-        self._picture.save(path)
+        self._picture.save(file_name("path", path))
 
     def png(self, exposure: float = 0) -> bytes:
         """The bytes of a PNG to look at: times 2^exposure, tone-mapped; those of save() at 0."""
-        return self._picture.png(exposure)
+        return self._picture.png(real("exposure", exposure))
 
     def _repr_png_(self) -> bytes:
         return self.png()
@@ -83,6 +82,17 @@ class Picture:
         return f"<psf.Picture{name}, {self.width} x {self.height}: {', '.join(self.layers)}>"
 
 
-def read_picture(path: str, layer: str = "") -> Picture:
+def as_picture(name: str, value: Picture | FileName) -> Picture:
+    """A picture as it is, or that of a file."""
+    if isinstance(value, Picture):
+        return value
+    try:
+        path = file_name(name, value)
+    except TypeError:
+        raise wrong(name, "a psf.Picture or a file name", value) from None
+    return read_picture(path)
+
+
+def read_picture(path: FileName, layer: str = "") -> Picture:
     """Reads the colours of an EXR: its root or the layer of this name."""
-    return Picture(_psf.Picture.read(path, layer))
+    return Picture(_psf.Picture.read(file_name("path", path), layer))

@@ -12,7 +12,7 @@ from psf import _psf
 from psf._picture import Picture
 from psf._progress import Progress, shown
 from psf._psf import Camera
-from psf._values import Value, as_column, texts
+from psf._values import Value, as_column, real, texts
 
 
 class FilteredRecords:
@@ -58,5 +58,5 @@ def filter_records(*, cameras: Sequence[Camera], position: npt.ArrayLike,
         column("flags", flags, "u1"))
     with shown(progress, "filter_records") as report:
         c_bar, neighbors, radius, pictures = _psf.filter_records(
-            list(cameras), texts(parameters), no_weights, n, report, *columns)
+            list(cameras), texts(parameters), no_weights, real("n", n), report, *columns)
     return FilteredRecords(c_bar, neighbors, radius, [Picture(picture) for picture in pictures])

@@ -16,7 +16,7 @@ from psf._parameters import Parameter
 from psf._picture import Picture, read_picture
 from psf._progress import Progress, shown
 from psf._studies import warn
-from psf._values import text
+from psf._values import FileName, file_name, items, psf_error, text
 
 Setting = Union[str, float, bool, Sequence[Union[str, float]]]
 
@@ -36,17 +36,19 @@ def _settings(given: dict[str, Setting]) -> list[tuple[str, str]]:
     pairs = []
     for name, value in given.items():
         name = name.replace("_", "-")
-        values = list(value) if isinstance(value, Iterable) and not isinstance(value, str) else [value]
+        values = [text(name, one) for one in items(value)]
+        if name == "channels":
+            values = [one for several in values for one in several.split(",")]
         if name in ("camera", "channels"):
-            pairs += [(name, text(one)) for one in values]
+            pairs += [(name, one) for one in values]
         else:
-            pairs.append((name, ("x" if name == "size" else ",").join(text(one) for one in values)))
+            pairs.append((name, ("x" if name == "size" else ",").join(values)))
     return pairs
 
 
-def _render(scene: str, output: str, images: str | Sequence[str], resume: bool,
+def _render(scene: str, output: str, images: FileName | Iterable[FileName], resume: bool,
             progress: Progress, given: dict[str, Setting]) -> dict[str, Any]:
-    files = [images] if isinstance(images, str) else list(images)
+    files = [file_name("image", one) for one in items(images)]
     with shown(progress, "render") as report:
         figures, notes = _renderer().render(scene, output, files, resume, _settings(given), report)
     warn(notes, stacklevel=4)
@@ -54,8 +56,9 @@ def _render(scene: str, output: str, images: str | Sequence[str], resume: bool,
     return loaded
 
 
-def render(scene: str, output: str | None = None, *, image: str | Sequence[str] = (),
-           resume: bool = False, progress: Progress = None, **settings: Setting) -> Dump:
+def render(scene: FileName, output: FileName | None = None, *,
+           image: FileName | Iterable[FileName] = (), resume: bool = False,
+           progress: Progress = None, **settings: Setting) -> Dump:
     """What ``psf-render`` does: renders a scene into a dump, and opens it.
 
         dump = psf.render("cornell.json", "cornell.pvb", passes=16, size=(256, 256))
@@ -67,7 +70,9 @@ def render(scene: str, output: str | None = None, *, image: str | Sequence[str] 
     ``psf.render_settings()`` lists them. ``rendered`` of the dump are the figures that the command
     writes with ``--json``.
     """
+    scene = file_name("scene", scene)
     if output is not None:
+        output = file_name("output", output)
         figures = _render(scene, output, image, resume, progress, settings)
         dump = Dump(output)
     else:
@@ -84,10 +89,16 @@ def render(scene: str, output: str | None = None, *, image: str | Sequence[str] 
     return dump
 
 
-def render_picture(scene: str, path: str, *, progress: Progress = None,
+def render_picture(scene: FileName, path: FileName, *, progress: Progress = None,
                    **settings: Setting) -> Picture:
     """What ``psf-render --image`` does without a dump: writes the picture without filter, of one
-    camera, and reads it. References are made so: ``passes=4096, seed=1``."""
+    camera, and reads it: an EXR. References are made so: ``passes=4096, seed=1``."""
+    scene, path = file_name("scene", scene), file_name("path", path)
+    if os.path.splitext(path)[1] != ".exr":
+        raise psf_error(2, f"{path}: the picture is read back, which needs .exr")
+    cameras = items(settings.get("camera", "first"))
+    if len(cameras) != 1 or cameras[0] == "all":
+        raise psf_error(2, "camera: the picture is of one camera; give one name")
     return read_picture(_render(scene, "", path, False, progress, settings)["images"][0])
 
 

@@ -9,9 +9,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Union
 
 from psf import _psf
-from psf._picture import Picture, read_picture
+from psf._picture import Picture, as_picture
 from psf._progress import Progress, shown
-from psf._values import Value, lists, with_underscores
+from psf._values import (FileName, Value, file_name, items, lists, psf_error, real,
+                         whole_or_none, with_underscores)
 
 if TYPE_CHECKING:
     from psf._dump import Dump
@@ -47,14 +48,16 @@ class Tuning(Figures):
     ``best``: the choice, for ``dump.filter(**tuning.best)``.
     """
 
-    def __init__(self, text: str, rows: list[dict[str, Any]], best: dict[str, str]) -> None:
+    def __init__(self, text: str, rows: list[dict[str, Any]], best: dict[str, str],
+                 inputs: Iterable[str]) -> None:
         super().__init__(text)
+        self._inputs = absolute(inputs)
         self.rows = [with_underscores(row) for row in rows]
         self.best: dict[str, Any] = with_underscores(best)
 
-    def save(self, path: str) -> None:
+    def save(self, path: FileName) -> None:
         """Writes the bytes of ``psf tune --json``; ``psf filter --tuned`` takes them."""
-        _write(path, self._text)
+        _psf.write_files(self._inputs, [(file_name("path", path), self._text)])
 
     def __repr__(self) -> str:
         return f"<psf.Tuning of {len(self.rows)} sets, {'sure' if self['sure'] else 'not sure'}>"
@@ -67,17 +70,16 @@ class Convergence(Figures):
     first; pandas.DataFrame() takes it.
     """
 
-    def __init__(self, text: str, csv: str, rows: list[dict[str, Any]]) -> None:
+    def __init__(self, text: str, csv: str, rows: list[dict[str, Any]],
+                 inputs: Iterable[str]) -> None:
         super().__init__(text)
-        self._csv = csv
+        self._csv, self._inputs = csv, absolute(inputs)
         self.rows = [with_underscores(row) for row in rows]
 
-    def save(self, folder: str) -> None:
+    def save(self, folder: FileName) -> None:
         """Writes converge.json and converge.csv as ``psf converge -o`` does; ``psf report`` takes
-        the folder."""
-        os.makedirs(folder, exist_ok=True)
-        _write(os.path.join(folder, "converge.json"), self._text)
-        _write(os.path.join(folder, "converge.csv"), self._csv)
+        the folder. A study that is there already stays."""
+        _psf.write_convergence(self._inputs, file_name("folder", folder), self._text, self._csv)
 
     def __repr__(self) -> str:
         return f"<psf.Convergence of {len(self['series']) - 1} sets, n up to {self['n'][-1]}>"
@@ -99,9 +101,9 @@ class Explanation(Figures):
         """The text with so many rows a table; None: ``psf explain --all``."""
         return self._explanation.whole_text() if rows is None else self._explanation.text(rows)
 
-    def save(self, path: str) -> None:
+    def save(self, path: FileName) -> None:
         """Writes .json, the bytes of ``psf explain --json``, or .ply, those of ``--ply``."""
-        self._explanation.save(path)
+        self._explanation.save(file_name("path", path))
 
     def __str__(self) -> str:
         return self.text()
@@ -110,9 +112,9 @@ class Explanation(Figures):
         return f"<psf.Explanation: {self.text().splitlines()[0]}>"
 
 
-def _write(path: str, text: str) -> None:
-    with open(path, "w", encoding="utf-8", newline="\n") as file:
-        file.write(text)
+def absolute(paths: Iterable[str]) -> list[str]:
+    """Names that hold when the working directory changes."""
+    return [os.path.abspath(path) for path in paths]
 
 
 def warn(notes: Iterable[str], stacklevel: int = 3) -> None:
@@ -130,18 +132,34 @@ def camera_number(dump: Dump, camera: str | None) -> int:
     return names.index(camera)
 
 
-def _render_text(render: Mapping[str, Any] | str) -> str:
-    if isinstance(render, str):
-        with open(render, encoding="utf-8") as file:
-            return file.read()
+def _render_text(render: Mapping[str, Any] | FileName | None) -> str:
+    """The figures of a render as text, if they are."""
+    if render is None:
+        raise TypeError("renders: None, which is rendered of a dump that was not rendered here; "
+                        "give the file that psf-render --json wrote")
+    name = "renders"
+    if not isinstance(render, Mapping):
+        name = file_name("renders", render)
+        try:
+            with open(name, encoding="utf-8") as file:
+                render = json.load(file)
+        except OSError as error:
+            raise psf_error(4, f"{name}: cannot be read: {error.strerror}") from None
+        except ValueError:
+            render = None
+    for key in ("passes", "seconds", "output_seconds"):
+        value = render.get(key) if isinstance(render, Mapping) else None
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise psf_error(3, f"{name}: has no number '{key}'; give what psf-render --json wrote")
+    assert isinstance(render, Mapping)
     return json.dumps(dict(render))
 
 
-def converge(dumps: Sequence[Union[Dump, str]], reference: Picture | str, *,
+def converge(dumps: Dump | FileName | Iterable[Dump | FileName], reference: Picture | FileName, *,
              passes: int | None = None, camera: str | None = None, epsilon: float = 0.01,
              all_metrics: bool = False, times: bool = True,
-             renders: Sequence[Mapping[str, Any] | str] = (), max_memory: int | None = None,
-             no_weights: bool = False, progress: Progress = None,
+             renders: Mapping[str, Any] | FileName | Iterable[Mapping[str, Any] | FileName] = (),
+             max_memory: int | None = None, no_weights: bool = False, progress: Progress = None,
              **parameters: Value | Iterable[Value]) -> Convergence:
     """What ``psf converge`` does: errors after 1, 2, 4, ... passes of every combination of the
     parameters' values.
@@ -153,14 +171,16 @@ def converge(dumps: Sequence[Union[Dump, str]], reference: Picture | str, *,
     """
     from psf._dump import Dump, open
 
-    opened = [one if isinstance(one, Dump) else open(one) for one in dumps[:1]]
-    paths = [one.path if isinstance(one, Dump) else one for one in dumps]
-    if isinstance(reference, str):
-        reference = read_picture(reference)
+    given = items(dumps)
+    opened = [one if isinstance(one, Dump) else open(one) for one in given[:1]]
+    paths = [one.path if isinstance(one, Dump) else file_name("dumps", one) for one in given]
+    picture = as_picture("reference", reference)._picture
     number = camera_number(opened[0], camera) if opened else 0
     with shown(progress, "converge") as report:
         text, csv, rows, notes = _psf.converge(
-            paths, reference._picture, lists(parameters), no_weights, passes, number, epsilon,
-            all_metrics, times, [_render_text(one) for one in renders], max_memory, report)
+            paths, picture, lists(parameters), no_weights, whole_or_none("passes", passes), number,
+            real("epsilon", epsilon), all_metrics, times,
+            [_render_text(one) for one in items(renders)],
+            whole_or_none("max_memory", max_memory), report)
     warn(notes)
-    return Convergence(text, csv, rows)
+    return Convergence(text, csv, rows, paths)

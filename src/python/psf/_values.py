@@ -2,40 +2,99 @@
 
 from __future__ import annotations
 
+import numbers
+import operator
+import os
+import reprlib
 from collections.abc import Iterable, Mapping
+from decimal import Decimal
 from typing import Any, Union
 
 import numpy as np
 import numpy.typing as npt
 
+from psf._psf import Error
+
 Value = Union[str, float, bool, None]  # of a parameter
 Passes = Union[int, slice, None]  # the first n, or a slice first:last; None: all
+FileName = Union[str, "os.PathLike[str]"]
 
 
-def text(value: Value) -> str:
-    if isinstance(value, np.generic):
+def wrong(name: str, expected: str, value: object) -> TypeError:
+    """The error of an argument of another type, one line."""
+    return TypeError(f"{name}: expected {expected}, not {' '.join(reprlib.repr(value).split())}")
+
+
+def psf_error(code: int, message: str) -> Error:
+    error = Error(message)
+    error.code = code
+    return error
+
+
+def file_name(name: str, value: Any) -> str:
+    try:
+        return os.fsdecode(value)
+    except TypeError:
+        raise wrong(name, "a file name", value) from None
+
+
+def items(value: Any) -> list[Any]:
+    """What a list, a generator or an array holds; anything else, a text too, is one item."""
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    one = isinstance(value, (str, bytes, Mapping)) or not isinstance(value, Iterable)
+    return [value] if one else list(value)
+
+
+def whole(name: str, value: Any, end: int = 1 << 64) -> int:
+    """A whole number from 0 to below ``end``."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise wrong(name, "a whole number", value) from None
+    if not 0 <= number < end:
+        raise ValueError(f"{name}: {number} is no whole number from 0 to {end - 1}")
+    return number
+
+
+def whole_or_none(name: str, value: Any) -> int | None:
+    return None if value is None else whole(name, value)
+
+
+def real(name: str, value: Any) -> float:
+    if isinstance(value, (numbers.Real, Decimal)):
+        return float(value)
+    raise wrong(name, "a number", value)
+
+
+def text(name: str, value: Any) -> str:
+    if isinstance(value, (np.generic, np.ndarray)) and value.size == 1:
         value = value.item()
     if value is None or value is False:
         return "off"
     if value is True:
         return "on"
-    return value if isinstance(value, str) else f"{value:.17g}"
+    if isinstance(value, str):
+        return value
+    if isinstance(value, numbers.Integral):
+        return str(int(value))
+    if isinstance(value, (numbers.Real, Decimal)):
+        return f"{float(value):.17g}"
+    raise wrong(name, "a number, text, True, False or None", value)
 
 
 def texts(given: Mapping[str, Value]) -> dict[str, str]:
-    return {name.replace("_", "-"): text(value) for name, value in given.items()}
+    return {name.replace("_", "-"): text(name, value) for name, value in given.items()}
 
 
 def lists(given: Mapping[str, Value | Iterable[Value]]) -> dict[str, str]:
     """Lists of values as the commands take them: "2px,4px". A text may be a list or a range."""
-    return {name.replace("_", "-"): ",".join(text(one) for one in _as_list(name, value))
+    return {name.replace("_", "-"): ",".join(text(name, one) for one in _as_list(name, value))
             for name, value in given.items()}
 
 
-def _as_list(name: str, value: Value | Iterable[Value]) -> list[Value]:
-    if value is None or isinstance(value, (str, float, int, np.generic)):
-        return [value]
-    values = list(value)
+def _as_list(name: str, value: Value | Iterable[Value]) -> list[Any]:
+    values = items(value)
     if not values:
         raise ValueError(f"{name}: an empty list")
     return values
@@ -48,15 +107,16 @@ def with_underscores(row: Mapping[str, Any]) -> dict[str, Any]:
 
 def pass_range(passes: Passes, all: int) -> tuple[int, int | None]:
     if isinstance(passes, slice):
-        first, last, step = passes.indices(all)
+        try:
+            first, last, step = passes.indices(all)
+        except TypeError:
+            raise wrong("passes", "a slice of whole numbers", passes) from None
         if step != 1:
             raise ValueError("passes: a slice first:last, without a step")
         # Beyond the end is an error of the library, not a shorter slice.
         beyond = passes.stop is not None and passes.stop > all
         return first, passes.stop if beyond else last
-    if passes is not None and passes < 0:
-        raise ValueError(f"passes: {passes} is no number of passes")
-    return 0, passes
+    return 0, whole_or_none("passes", passes)
 
 
 def as_column(name: str, values: npt.ArrayLike | None, dtype: str, components: int,

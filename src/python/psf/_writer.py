@@ -12,13 +12,13 @@ import numpy.typing as npt
 
 from psf import _psf
 from psf._psf import Camera
-from psf._values import as_column
+from psf._values import FileName, as_column, file_name
 
 
 class DumpWriter:
     """Writes a dump, pass by pass; as a context manager it closes the file, unless it raises."""
 
-    def __init__(self, path: str, cameras: Sequence[Camera],
+    def __init__(self, path: FileName, cameras: Sequence[Camera],
                  channels: Mapping[str, str | tuple[str, int]],
                  metadata: Mapping[str, Any] | None = None, compress: bool = True) -> None:
         self._rows: list[tuple[str, np.dtype[Any], int]] = []
@@ -29,8 +29,9 @@ class DumpWriter:
         kinds = [(name, f"{dtype.kind}{8 * dtype.itemsize}", components, False)
                  for name, dtype, components in self._rows]
         self._closed = False
-        self._writer: _psf.DumpWriter | None = _psf.DumpWriter(path, list(cameras), kinds, compress,
-                                       json.dumps(dict(metadata)) if metadata else "")
+        self._writer: _psf.DumpWriter | None = _psf.DumpWriter(
+            file_name("path", path), list(cameras), kinds, compress,
+            json.dumps(dict(metadata)) if metadata else "")
 
     def append(self, **columns: npt.ArrayLike) -> None:
         """Appends records to the current pass: an array for each channel, of as many rows."""
@@ -81,7 +82,7 @@ class DumpWriter:
             self.close()
 
 
-def create(path: str, cameras: Sequence[Camera],
+def create(path: FileName, cameras: Sequence[Camera],
            channels: Mapping[str, str | tuple[str, int]],
            metadata: Mapping[str, Any] | None = None, compress: bool = True) -> DumpWriter:
     """Begins a dump: ``channels`` are types by name, {"position": ("f4", 3), "pixel": "u4"}.
