@@ -88,7 +88,7 @@ class Render(unittest.TestCase):
                 (self.file("p.png"), {}, psf.Error, ".*p.png: the picture is read back"),
                 ([self.file("p.exr")], {}, TypeError, "path: expected a file name"),
                 (self.file("p.exr"), {"camera": "all"}, psf.Error, "camera: .* of one camera"),
-                (self.file("p.exr"), {"camera": ["a", "b"]}, psf.Error, "camera: .* of one camera")):
+                (self.file("p.exr"), {"camera": (c for c in "ab")}, psf.Error, "camera: .* of one camera")):
             with self.assertRaisesRegex(error, "^" + text):
                 psf.render_picture(CORNELL, path, size=(8, 8), passes=1, **settings)
         self.assertEqual(os.listdir(self.folder.name), [])
@@ -102,7 +102,8 @@ class Render(unittest.TestCase):
         picture = psf.render_picture(Path(CORNELL), Path(self.file("p.exr")), size=(4, 4), passes=1,
                                      seed=(1 << 63) + 1)
         self.assertEqual((picture.width, len(os.listdir(self.folder.name))), (4, 4))
-        for settings, text in ((dict(size={"w": 4}), "size: expected a number"),
+        for settings, text in ((dict(shade_rate=[[]]), "shade_rate: expected a number"),
+                               (dict(size={"w": 4}), "size: expected a number"),
                                (dict(image=[5]), "image: expected a file name"),
                                (dict(output=5), "output: expected a file name"),
                                (dict(scene=None), "scene: expected a file name")):

@@ -35,8 +35,8 @@ def _settings(given: dict[str, Setting]) -> list[tuple[str, str]]:
     """Each as the command takes it: size=(256, 256) is "256x256", eye=(0, 2, 6) is "0,2,6"."""
     pairs = []
     for name, value in given.items():
-        name = name.replace("_", "-")
         values = [text(name, one) for one in items(value)]
+        name = name.replace("_", "-")
         if name == "channels":
             values = [one for several in values for one in several.split(",")]
         if name in ("camera", "channels"):
@@ -96,9 +96,10 @@ def render_picture(scene: FileName, path: FileName, *, progress: Progress = None
     scene, path = file_name("scene", scene), file_name("path", path)
     if os.path.splitext(path)[1] != ".exr":
         raise psf_error(2, f"{path}: the picture is read back, which needs .exr")
-    cameras = items(settings.get("camera", "first"))
-    if len(cameras) != 1 or cameras[0] == "all":
-        raise psf_error(2, "camera: the picture is of one camera; give one name")
+    if "camera" in settings:
+        cameras = settings["camera"] = items(settings["camera"])
+        if len(cameras) != 1 or cameras[0] == "all":
+            raise psf_error(2, "camera: the picture is of one camera; give one name")
     return read_picture(_render(scene, "", path, False, progress, settings)["images"][0])
 
 

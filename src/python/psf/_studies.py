@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 import os
 import warnings
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Union
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 from psf import _psf
 from psf._picture import Picture, as_picture
@@ -51,7 +51,7 @@ class Tuning(Figures):
     def __init__(self, text: str, rows: list[dict[str, Any]], best: dict[str, str],
                  inputs: Iterable[str]) -> None:
         super().__init__(text)
-        self._inputs = absolute(inputs)
+        self._inputs = _absolute(inputs)
         self.rows = [with_underscores(row) for row in rows]
         self.best: dict[str, Any] = with_underscores(best)
 
@@ -73,7 +73,7 @@ class Convergence(Figures):
     def __init__(self, text: str, csv: str, rows: list[dict[str, Any]],
                  inputs: Iterable[str]) -> None:
         super().__init__(text)
-        self._csv, self._inputs = csv, absolute(inputs)
+        self._csv, self._inputs = csv, _absolute(inputs)
         self.rows = [with_underscores(row) for row in rows]
 
     def save(self, folder: FileName) -> None:
@@ -112,7 +112,7 @@ class Explanation(Figures):
         return f"<psf.Explanation: {self.text().splitlines()[0]}>"
 
 
-def absolute(paths: Iterable[str]) -> list[str]:
+def _absolute(paths: Iterable[str]) -> list[str]:
     """Names that hold when the working directory changes."""
     return [os.path.abspath(path) for path in paths]
 
