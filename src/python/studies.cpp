@@ -113,6 +113,7 @@ Explanation explain(const Dump& dump, const std::optional<Pixel>& pixel, std::ui
 void write_files(const std::vector<std::string>& inputs,
                  const std::vector<std::pair<std::string, std::string>>& texts) {
   std::vector<std::string> paths;
+  paths.reserve(texts.size());
   for (const auto& text : texts) paths.push_back(text.first);
   core::check_files(inputs, paths);
   for (const auto& [path, text] : texts) core::write_text_file(path, text);
