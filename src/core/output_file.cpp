@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <system_error>
 
 #include "core/error.h"
 #include "core/temporary_name.h"
@@ -85,6 +86,13 @@ void OutputFile::commit() {
     refuse(path_, std::string("cannot put the finished file in place: ") + std::strerror(errno));
   }
   unfinished_->keep();
+}
+
+void make_folder(const std::string& path) {
+  std::error_code error, other;
+  fs::create_directories(path, error);
+  if (fs::is_directory(path, other)) return;
+  refuse(path, "cannot be made as a folder: " + error.message() + "; give another name");
 }
 
 void write_text_file(const std::string& path, const std::string& text) {

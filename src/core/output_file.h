@@ -34,6 +34,9 @@ class OutputFile {
 // not exist.
 [[nodiscard]] std::string followed(const std::string& path);
 
+// Makes a folder, and those above it, where it is missing. Throws Error{io}.
+void make_folder(const std::string& path);
+
 // Writes a file that holds `text`, by OutputFile. Throws Error{io}.
 void write_text_file(const std::string& path, const std::string& text);
 

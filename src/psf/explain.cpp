@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <mutex>
 
+#include "core/apart.h"
 #include "core/error.h"
 #include "core/output_file.h"
 #include "explain/ply.h"
@@ -81,6 +82,7 @@ const std::vector<std::string>& Explanation::notes() const {
 }
 
 void Explanation::save(const std::string& path) const {
+  core::check_files({state_->of->dump.reader().path()}, {path});
   const std::string extension = std::filesystem::path(path).extension().string();
   if (extension == ".json") return core::write_text_file(path, json());
   if (extension != ".ply") {

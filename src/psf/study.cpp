@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <mutex>
 
+#include "core/apart.h"
 #include "core/error.h"
 #include "core/json_text.h"
+#include "core/output_file.h"
 #include "metrics/reference.h"
 #include "psf/dump_state.h"
 #include "psf/library.h"
@@ -66,6 +69,11 @@ void check_reference(const Picture& reference, const run::Dump& dump, std::size_
 // As its file is written.
 std::string file_text(const study::Json& json) {
   return core::json_text(json, 1) + "\n";
+}
+
+// A name that holds when the working directory changes.
+std::string absolute(const std::string& path) {
+  return std::filesystem::absolute(path).string();
 }
 
 TuneRow to_row(const study::TuneRow& row) {
@@ -158,7 +166,13 @@ TuneResult Dump::tune(std::span<const Parameters> sets, const TuneOptions& optio
   result.sure = study::may_be_better(tuning) == 0;
   result.unfiltered = tuning.unfiltered;
   result.json = file_text(study::to_json(tuning, state_->dump, request, PSF_VERSION));
+  result.inputs = {absolute(state_->dump.reader().path())};
   return result;
+}
+
+void TuneResult::save(const std::string& path) const {
+  core::check_files(inputs, {path});
+  core::write_text_file(path, json);
 }
 
 ConvergeResult converge(std::span<const std::string> dumps, const Picture& reference,
@@ -207,7 +221,19 @@ ConvergeResult converge(std::span<const std::string> dumps, const Picture& refer
   for (const study::Json& row : study::to_rows(report)) result.rows.push_back(to_row(row));
   result.json = file_text(study::to_json(report));
   result.csv = study::to_csv(report);
+  for (const std::string& path : dumps) result.inputs.push_back(absolute(path));
+  if (!reference.file.empty()) result.inputs.push_back(absolute(reference.file));
   return result;
+}
+
+void ConvergeResult::save(const std::string& folder) const {
+  const study::ConvergePaths paths(folder);
+  core::check_apart(inputs, std::vector{paths.json, paths.csv});
+  check_none_there(paths);
+  core::make_folder(folder);
+  core::check_files(inputs, {paths.json, paths.csv});
+  core::write_text_file(paths.csv, csv);
+  core::write_text_file(paths.json, json);
 }
 
 }  // namespace psf

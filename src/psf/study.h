@@ -64,12 +64,17 @@ struct TuneRow {
 
 // What Dump::tune() found.
 struct TuneResult {
-  std::vector<TuneRow> rows;       // least error first
-  Parameters best;                 // the choice, for Dump::filter(): what psf filter --tuned takes
-  bool sure = false;               // no other set may be clearly better
-  double unfiltered = 0;           // relMSE of the picture without filter
-  std::vector<std::string> notes;  // what was switched off, and why
-  std::string json;                // the bytes of psf tune --json
+  std::vector<TuneRow> rows;        // least error first
+  Parameters best;                  // the choice, for Dump::filter(): what psf filter --tuned takes
+  bool sure = false;                // no other set may be clearly better
+  double unfiltered = 0;            // relMSE of the picture without filter
+  std::vector<std::string> notes;   // what was switched off, and why
+  std::string json;                 // the bytes of psf tune --json
+  std::vector<std::string> inputs;  // the files that it was made of
+
+  // Writes `json` to a file, whole or not at all. Throws Error{usage} where that is one of
+  // `inputs`, Error{io}.
+  PSF_API void save(const std::string& path) const;
 };
 
 // How converge() measures.
@@ -97,10 +102,15 @@ struct ConvergeRow {
 
 // What converge() measured.
 struct ConvergeResult {
-  std::vector<ConvergeRow> rows;   // unfiltered first, then the sets in their order; n ascending
-  std::vector<std::string> notes;  // what was switched off, and why
-  std::string json;                // the bytes of the file converge.json
-  std::string csv;                 // the bytes of the file converge.csv
+  std::vector<ConvergeRow> rows;    // unfiltered first, then the sets in their order; n ascending
+  std::vector<std::string> notes;   // what was switched off, and why
+  std::string json;                 // the bytes of the file converge.json
+  std::string csv;                  // the bytes of the file converge.csv
+  std::vector<std::string> inputs;  // the files that it was made of
+
+  // Writes converge.json and converge.csv into a folder, which is made where it is missing. Throws
+  // Error{usage} where a study is there already or a file is one of `inputs`, Error{io}.
+  PSF_API void save(const std::string& folder) const;
 };
 
 // What psf converge does, without its pictures: the errors of every set after 1, 2, 4, ... passes.

@@ -12,7 +12,7 @@
 #include <thread>
 #include <utility>
 
-#include "core/error.h"
+#include "psf/error.h"
 
 namespace psf::python {
 
@@ -34,7 +34,6 @@ auto interruptible(const py::object& progress, const Work& work) {
   };
   std::optional<decltype(work(on_progress))> result;
   std::exception_ptr failed, raised;
-  ++at_work;
   std::thread worker([&] {
     try {
       const Scope scope(stopped);
@@ -44,6 +43,7 @@ auto interruptible(const py::object& progress, const Work& work) {
     }
     finished = true;
   });
+  ++at_work;
   while (!finished) {
     {
       const py::gil_scoped_release released;
@@ -62,7 +62,7 @@ auto interruptible(const py::object& progress, const Work& work) {
   --at_work;
   if (raised) std::rethrow_exception(raised);
   if (failed) std::rethrow_exception(failed);
-  if (!progress.is_none() && total > 0) progress(total.load(), total.load());
+  if (!progress.is_none() && total > 0) progress(done.load(), total.load());
   return std::move(*result);
 }
 

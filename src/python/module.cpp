@@ -39,23 +39,7 @@ py::array read_channel(const Dump& dump, const Channel& channel, std::uint64_t f
   return values;
 }
 
-}  // namespace
-
-PYBIND11_MODULE(_psf, m) {
-  m.attr("version") = PSF_VERSION;
-  static const py::exception<Error> kError(m, "Error");
-  py::register_exception_translator(translate);
-  end_at_exit(interrupt);
-
-  m.def("parameters", [] {
-    std::vector<std::tuple<std::string, std::string, std::string, std::string>> all;
-    for (const ParameterHelp& one : Parameters::help()) {
-      all.emplace_back(one.name, one.type, one.help, one.standard);
-    }
-    return all;
-  });
-  m.def("metric_names", metric_names);
-
+void bind_values(py::module_& m) {
   py::class_<Channel>(m, "Channel")
       .def_readonly("name", &Channel::name)
       .def_readonly("type", &Channel::type)
@@ -72,7 +56,9 @@ PYBIND11_MODULE(_psf, m) {
       .def_readonly("width", &Camera::width)
       .def_readonly("height", &Camera::height)
       .def_readonly("angle_per_pixel", &Camera::angle_per_pixel);
+}
 
+void bind_picture(py::module_& m) {
   py::class_<Picture>(m, "Picture")
       .def_readonly("width", &Picture::width)
       .def_readonly("height", &Picture::height)
@@ -118,7 +104,27 @@ PYBIND11_MODULE(_psf, m) {
       .def_static("read", &Picture::read, py::arg("path"), py::arg("layer") = "",
                   py::call_guard<py::gil_scoped_release>())
       .def("error", &Picture::error, py::call_guard<py::gil_scoped_release>());
+}
 
+}  // namespace
+
+PYBIND11_MODULE(_psf, m) {
+  m.attr("version") = PSF_VERSION;
+  static const py::exception<Error> kError(m, "Error");
+  py::register_exception_translator(translate);
+  end_at_exit(interrupt);
+
+  m.def("parameters", [] {
+    std::vector<std::tuple<std::string, std::string, std::string, std::string>> all;
+    for (const ParameterHelp& one : Parameters::help()) {
+      all.emplace_back(one.name, one.type, one.help, one.standard);
+    }
+    return all;
+  });
+  m.def("metric_names", metric_names);
+
+  bind_values(m);
+  bind_picture(m);
   py::class_<FilterResult>(m, "FilterResult")
       .def("take_pictures", [](FilterResult& result) { return std::move(result.pictures); })
       .def_readonly("notes", &FilterResult::notes)

@@ -38,8 +38,11 @@ void bind_records(py::module_& m) {
           records.camera = span_of(camera);
           records.flags = span_of(flags);
           FilteredRecords done = work_on(progress, [&](const auto& on_progress) {
-            on_progress(0, records.pixel.size());  // one block: there is no more to tell
-            return filter_records(records, cameras, parameters, n);
+            // One block: there is no more to tell than its beginning and its end.
+            on_progress(0, records.pixel.size());
+            FilteredRecords filtered = filter_records(records, cameras, parameters, n);
+            on_progress(records.pixel.size(), records.pixel.size());
+            return filtered;
           });
           const auto count = static_cast<py::ssize_t>(done.neighbors.size());
           return py::make_tuple(adopt(std::move(done.c_bar), {count, 3}),

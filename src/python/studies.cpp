@@ -1,14 +1,9 @@
 // Studies of dumps: sweep, tune, converge, explain. Figures are the JSON of the commands.
 #include <pybind11/stl.h>
 
-#include <filesystem>
 #include <tuple>
-#include <utility>
 #include <vector>
 
-#include "core/apart.h"
-#include "core/error.h"
-#include "core/output_file.h"
 #include "module.h"
 
 namespace psf::python {
@@ -70,31 +65,27 @@ auto sweep(const Dump& dump, const Picture& reference, const Texts& lists, bool 
   return std::make_tuple(to_list(result.rows), result.notes);
 }
 
-// Figures, rows, the choice, notes.
-auto tune(const Dump& dump, Texts lists, bool no_weights, const PassRange& passes,
-          std::size_t camera, double epsilon, std::optional<std::uint64_t> max_memory,
-          const py::object& progress) {
+TuneResult tune(const Dump& dump, Texts lists, bool no_weights, const PassRange& passes,
+                std::size_t camera, double epsilon, std::optional<std::uint64_t> max_memory,
+                const py::object& progress) {
   lists.try_emplace("r0", tune_radii());
   const std::vector<Parameters> sets = Parameters::combinations(lists, no_weights);
-  const TuneResult result = work_on(progress, [&](const auto& on_progress) {
+  return work_on(progress, [&](const auto& on_progress) {
     return dump.tune(sets, {to_passes(passes), camera, epsilon, max_memory, on_progress});
   });
-  return std::make_tuple(result.json, to_list(result.rows), result.best.given(), result.notes);
 }
 
-// The texts of both files, rows, notes.
-auto converge(const std::vector<std::string>& dumps, const Picture& reference, const Texts& lists,
-              bool no_weights, std::optional<std::uint64_t> passes, std::size_t camera,
-              double epsilon, bool all_metrics, bool times,
-              const std::vector<std::string>& render_json, std::optional<std::uint64_t> max_memory,
-              const py::object& progress) {
+ConvergeResult converge(const std::vector<std::string>& dumps, const Picture& reference,
+                        const Texts& lists, bool no_weights, std::optional<std::uint64_t> passes,
+                        std::size_t camera, double epsilon, bool all_metrics, bool times,
+                        const std::vector<std::string>& render_json,
+                        std::optional<std::uint64_t> max_memory, const py::object& progress) {
   const std::vector<Parameters> sets = Parameters::combinations(lists, no_weights);
-  const ConvergeResult result = work_on(progress, [&](const auto& on_progress) {
+  return work_on(progress, [&](const auto& on_progress) {
     return psf::converge(
         dumps, reference, sets,
         {passes, camera, epsilon, all_metrics, times, render_json, max_memory, on_progress});
   });
-  return std::make_tuple(result.json, result.csv, to_list(result.rows), result.notes);
 }
 
 using Pixel = std::tuple<std::uint32_t, std::uint32_t>;
@@ -109,41 +100,23 @@ Explanation explain(const Dump& dump, const std::optional<Pixel>& pixel, std::ui
   });
 }
 
-// Writes each text to its file, whole or not at all, and none over one of `inputs`.
-void write_files(const std::vector<std::string>& inputs,
-                 const std::vector<std::pair<std::string, std::string>>& texts) {
-  std::vector<std::string> paths;
-  paths.reserve(texts.size());
-  for (const auto& text : texts) paths.push_back(text.first);
-  core::check_files(inputs, paths);
-  for (const auto& [path, text] : texts) core::write_text_file(path, text);
-}
-
-// The files of psf converge -o, in a folder that is made, unless a study is there already.
-void write_convergence(const std::vector<std::string>& inputs, const std::string& folder,
-                       const std::string& json, const std::string& csv) {
-  const std::filesystem::path path(folder);
-  const std::string json_path = (path / "converge.json").string();
-  const std::string csv_path = (path / "converge.csv").string();
-  core::check_apart(inputs, std::vector{json_path, csv_path});
-  std::error_code error;
-  if (std::filesystem::exists(json_path, error)) {
-    throw Error(ErrorCode::usage, json_path + ": is there already; give another folder");
-  }
-  std::filesystem::create_directories(path, error);
-  if (std::error_code other; !std::filesystem::is_directory(path, other)) {
-    throw Error(ErrorCode::io, folder + ": cannot be made as a folder: " + error.message());
-  }
-  write_files(inputs, {{csv_path, csv}, {json_path, json}});
-}
-
 }  // namespace
 
 void bind_studies(py::module_& m, py::class_<Dump>& dump) {
   dump.def("sweep", sweep).def("tune", tune).def("explain", explain);
   m.def("converge", converge);
-  m.def("write_files", write_files, py::call_guard<py::gil_scoped_release>());
-  m.def("write_convergence", write_convergence, py::call_guard<py::gil_scoped_release>());
+  py::class_<TuneResult>(m, "TuneResult")
+      .def_readonly("json", &TuneResult::json)
+      .def_property_readonly("rows", [](const TuneResult& result) { return to_list(result.rows); })
+      .def_property_readonly("best", [](const TuneResult& result) { return result.best.given(); })
+      .def_readonly("notes", &TuneResult::notes)
+      .def("save", &TuneResult::save, py::call_guard<py::gil_scoped_release>());
+  py::class_<ConvergeResult>(m, "ConvergeResult")
+      .def_readonly("json", &ConvergeResult::json)
+      .def_property_readonly("rows",
+                             [](const ConvergeResult& result) { return to_list(result.rows); })
+      .def_readonly("notes", &ConvergeResult::notes)
+      .def("save", &ConvergeResult::save, py::call_guard<py::gil_scoped_release>());
   py::class_<Explanation>(m, "Explanation")
       .def("text", &Explanation::text)
       .def("whole_text", &Explanation::whole_text)

@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
+#include <system_error>
+
+#include "core/error.h"
 
 namespace psf::study {
 namespace {
@@ -198,6 +202,17 @@ std::string to_csv(const ConvergeReport& report) {
   line(rows[0], true);
   for (const Json& row : rows) line(row, false);
   return text;
+}
+
+ConvergePaths::ConvergePaths(const std::string& folder)
+    : json((std::filesystem::path(folder) / "converge.json").string()),
+      csv((std::filesystem::path(folder) / "converge.csv").string()) {}
+
+void check_none_there(const ConvergePaths& paths) {
+  std::error_code error;
+  if (std::filesystem::exists(paths.json, error)) {
+    throw Error(ErrorCode::usage, paths.json + ": is there already; give another folder");
+  }
 }
 
 }  // namespace psf::study

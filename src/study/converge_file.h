@@ -57,4 +57,13 @@ struct ConvergeReport {
 // The same as a table, one line each.
 [[nodiscard]] std::string to_csv(const ConvergeReport& report);
 
+// The paths of converge.json and converge.csv in a folder.
+struct ConvergePaths {
+  explicit ConvergePaths(const std::string& folder);
+
+  std::string json, csv;
+};
+// A study that is there already stays: throws Error{usage} where the file `json` exists.
+void check_none_there(const ConvergePaths& paths);
+
 }  // namespace psf::study

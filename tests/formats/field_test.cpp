@@ -131,7 +131,7 @@ Cost try_fields(std::size_t recover_each) {
   const test::WithoutSync fast;
   const test::Scratch scratch;
   const std::string path = scratch.path("field.pvb");
-  const long before = peak_kilobytes();
+  [[maybe_unused]] const long before = peak_kilobytes();
   Cost most;
   std::size_t files = 0;
   for (const Codec codec : {Codec::raw, Codec::zstd}) {
@@ -179,7 +179,9 @@ Cost try_fields(std::size_t recover_each) {
   }
   CAPTURE(files);
   CHECK(files > 2000);
+#ifndef __SANITIZE_ADDRESS__  // it keeps what was freed for a while
   CHECK(peak_kilobytes() - before < 300 * 1024);
+#endif
   return most;
 }
 

@@ -25,10 +25,11 @@ void write(const fs::path& path, const std::string& text) {
   if (!file.flush()) throw Error(ErrorCode::io, path.string() + ": cannot be written");
 }
 
-void write_all(const fs::path& folder, const CLI::App& app) {
-  const Command program = describe(app);
+void write_all(const fs::path& folder, const std::vector<Command>& programs,
+               const Command& program) {
   const auto write_page = [&](const Command& command) {
-    write(folder / "man1" / (page_name(program, command) + ".1"), man_page(program, command));
+    write(folder / "man1" / (page_name(program, command) + ".1"),
+          man_page(programs, program, command));
   };
   write_page(program);
   for (const Command& verb : program.verbs) write_page(verb);
@@ -37,19 +38,26 @@ void write_all(const fs::path& folder, const CLI::App& app) {
   write(folder / "fish" / (program.name + ".fish"), fish_completion(program));
 }
 
-void write_all(const fs::path& folder) {
-  fs::remove_all(folder);  // a verb that is no more has no page
+std::vector<Command> describe_all() {
+  std::vector<Command> programs;
   CLI::App psf, bench;
   tools::declare_psf(psf);
-  write_all(folder, psf);
-  bench::declare_psf_bench(bench);
-  write_all(folder, bench);
+  programs.push_back(describe(psf));
 #ifdef PSF_WITH_RENDER
   CLI::App render;
   tools::RenderOptions options;
   tools::declare_psf_render(render, options);
-  write_all(folder, render);
+  programs.push_back(describe(render));
 #endif
+  bench::declare_psf_bench(bench);
+  programs.push_back(describe(bench));
+  return programs;
+}
+
+void write_all(const fs::path& folder) {
+  const std::vector<Command> programs = describe_all();
+  fs::remove_all(folder);  // a verb that is no more has no page
+  for (const Command& program : programs) write_all(folder, programs, program);
 }
 
 }  // namespace

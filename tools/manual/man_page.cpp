@@ -209,13 +209,14 @@ std::string files(const Command& command) {
   return text.empty() ? text : ".SH FILES\n" + text;
 }
 
-std::string see_also(const Command& program, const Command& command) {
+std::string see_also(const std::vector<Command>& programs, const Command& program,
+                     const Command& command) {
   std::vector<std::string> pages;
   const auto add = [&](const std::string& name) {
     if (name != page_name(program, command)) pages.push_back(bold(name) + "(1)");
   };
-  for (const char* name : {"psf", "psf-render", "psf-bench"}) {
-    if (name != program.name) add(name);
+  for (const Command& other : programs) {
+    if (other.name != program.name) add(other.name);
   }
   add(program.name);
   for (const Command& verb : program.verbs) add(page_name(program, verb));
@@ -230,7 +231,8 @@ std::string page_name(const Command& program, const Command& command) {
   return &program == &command ? program.name : program.name + "-" + command.name;
 }
 
-std::string man_page(const Command& program, const Command& command) {
+std::string man_page(const std::vector<Command>& programs, const Command& program,
+                     const Command& command) {
   const std::string name = page_name(program, command);
   std::string upper = name;
   for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -256,7 +258,7 @@ std::string man_page(const Command& program, const Command& command) {
   }
   page += options(command);
   if (!command.example.empty()) page += ".SH EXAMPLE\n.EX\n" + typed(command.example) + "\n.EE\n";
-  return page + exit_status() + files(command) + see_also(program, command);
+  return page + exit_status() + files(command) + see_also(programs, program, command);
 }
 
 }  // namespace psf::manual

@@ -11,92 +11,75 @@ const std::map<std::string, const char*> kProse = {
     {"psf",
      "A renderer writes a record for every light transport path to a path-vertex buffer, a file "
      ".pvb, called a dump. psf averages what each path contributes over nearby vertices of the "
-     "same "
-     "block of paths, with any radius, schedule, block and weights, as often as you like, without "
-     "rendering again. It knows no renderer: psf-render(1) writes dumps, and so does any program "
-     "that writes the format.\n"
-     "Every verb takes --threads, --quiet and --json; the result is the same bytes for any number "
-     "of "
-     "threads. Results go to standard output, progress and notes to standard error. An error is "
-     "one "
-     "line that names the file, the place and the remedy. A file appears under its name only when "
-     "it "
-     "is whole, and an output that is an input or another output is refused before any work."},
+     "same block of paths, with any radius, schedule, block and weights, as often as you like, "
+     "without rendering again. It knows no renderer: psf-render(1) writes dumps, and so does any "
+     "program that writes the format.\n"
+     "Every verb takes --threads, --quiet and --json; the result is the same bytes for any "
+     "number of threads. Results go to standard output, progress and notes to standard error. An "
+     "error is one line that names the file, the place and the remedy. A file appears under its "
+     "name only when it is whole, and an output that is an input or another output is refused "
+     "before any work."},
     {"psf-filter",
-     "Block by block of paths, what a path contributes becomes the weighted mean over the vertices "
-     "of the block within its radius, r0 f / sqrt(n^delta), that every weight lets pass. The "
-     "radius "
-     "shrinks as the samples n accumulate, and the bias with it; f is the size of a pixel there, "
-     "the "
-     "length of the path from the camera, or 1, by the unit of --r0. A weight takes a threshold, "
-     "on, or off: --gloss off, --visibility=off. One that is on by default and whose channel the "
-     "dump "
-     "lacks is off, with a note.\n"
-     "An .exr holds the picture as R,G,B and, as layers, the same paths without filter, the number "
-     "of neighbors, the radius, albedo and normal; every parameter is an attribute. A dump of "
-     "several "
-     "cameras gives a picture for each, with its name before the ending."},
+     "Block by block of paths, what a path contributes becomes the weighted mean over the "
+     "vertices of the block within its radius, r0 f / sqrt(n^delta), that every weight lets "
+     "pass. The radius shrinks as the samples n accumulate, and the bias with it; f is the size "
+     "of a pixel there, the length of the path from the camera, or 1, by the unit of --r0. A "
+     "weight takes a threshold, on, or off: --gloss off, --visibility=off. One that is on by "
+     "default and whose channel the dump lacks is off, with a note.\n"
+     "An .exr holds the picture as R,G,B and, as layers, the same paths without filter, the "
+     "number of neighbors, the radius, albedo and normal; every parameter is an attribute. A "
+     "dump of several cameras gives a picture for each, with its name before the ending."},
     {"psf-info",
      "Only what it needs of the file is read: a dump of any size is opened in milliseconds, also "
      "while it grows, unless --stats asks for every value."},
     {"psf-verify",
-     "What is damaged is named by chunk, channel and records. psf-recover(1) saves what is whole."},
+     "What is damaged is named by chunk, channel and records. psf-recover(1) saves what is "
+     "whole."},
     {"psf-recover",
-     "The damaged file is not touched. What was found and what was lost is told a line each. Where "
-     "a "
-     "channel that you can do without is all that is damaged, psf-cat(1) with --drop keeps every "
-     "record."},
+     "The damaged file is not touched. What was found and what was lost is told a line each. "
+     "Where a channel that you can do without is all that is damaged, psf-cat(1) with --drop "
+     "keeps every record."},
     {"psf-cat",
      "Dumps of one scene that were rendered apart, with different seeds, become one dump of all "
-     "their "
-     "passes. With one input it is stored otherwise: raw, smaller, fewer channels or passes. The "
-     "output may replace one of the inputs."},
+     "their passes. With one input it is stored otherwise: raw, smaller, fewer channels or "
+     "passes. The output may replace one of the inputs."},
     {"psf-export",
      "The name of the output decides: a folder gets a numpy array for each channel, .ply is a "
-     "point "
-     "cloud for MeshLab or CloudCompare, .csv a table."},
+     "point cloud for MeshLab or CloudCompare, .csv a table."},
     {"psf-compare",
      "The first five metrics are of linear values; SSIM and FLIP look at the picture as a .png "
-     "shows "
-     "it. Pixels that are not finite are left out and counted, and then no bound holds. Any "
-     "program's "
-     "OpenEXR pictures will do; where several layers could be meant they are listed."},
+     "shows it. Pixels that are not finite are left out and counted, and then no bound holds. "
+     "Any program's OpenEXR pictures will do; where several layers could be meant they are "
+     "listed."},
     {"psf-sweep",
-     "A list is values with commas between, or a range: 2px:32px:x2 multiplies, 0.1:0.9:0.1 adds. "
-     "Rows that differ in r0 and delta alone share one traversal of the dump. Each row is what "
-     "psf-filter(1) and psf-compare(1) give. The folder gets sweep.json and sweep.csv, and with "
-     "--pictures every picture; psf-report(1) makes a page of it."},
+     "A list is values with commas between, or a range: 2px:32px:x2 multiplies, 0.1:0.9:0.1 "
+     "adds. Rows that differ in r0 and delta alone share one traversal of the dump. Each row is "
+     "what psf-filter(1) and psf-compare(1) give. The folder gets sweep.json and sweep.csv, and "
+     "with --pictures every picture; psf-report(1) makes a page of it."},
     {"psf-converge",
-     "Dumps of one scene with different seeds are replicates, which tell bias and variance apart, "
-     "with intervals of 95%. Local slopes stand beside those of theory. With --render-json, "
-     "speed-ups "
-     "count the time of rendering, of writing the dump and of the filter. The folder gets the "
-     "figures; "
-     "psf-report(1) makes a page of it."},
+     "Dumps of one scene with different seeds are replicates, which tell bias and variance "
+     "apart, with intervals of 95%. Local slopes stand beside those of theory. With "
+     "--render-json, speed-ups count the time of rendering, of writing the dump and of the "
+     "filter. The folder gets the figures; psf-report(1) makes a page of it."},
     {"psf-tune",
      "Independent parts of the passes tell the error of each set of parameters: what one part "
-     "gives "
-     "filtered against what the others give without filter. It says when it is not sure of its "
-     "choice. "
-     "psf-filter(1) with --tuned takes what --json wrote."},
+     "gives filtered against what the others give without filter. It says when it is not sure of "
+     "its choice. psf-filter(1) with --tuned takes what --json wrote."},
     {"psf-explain",
-     "Lists the pixel's paths, whom they averaged, what each weight refused, and whence its light "
-     "came: what each source adds beyond the mean of the pixel's own paths. Where the difference "
-     "is "
-     "more than noise, it names the weight that would have refused the sources that make it."},
+     "Lists the pixel's paths, whom they averaged, what each weight refused, and whence its "
+     "light came: what each source adds beyond the mean of the pixel's own paths. Where the "
+     "difference is more than noise, it names the weight that would have refused the sources "
+     "that make it."},
     {"psf-report",
      "The page needs no network. It has error maps over any two parameters, errors against n, "
-     "tables "
-     "that sort, and a viewer for the pictures; everything works from the keyboard."},
+     "tables that sort, and a viewer for the pictures; everything works from the keyboard."},
     {"psf-render",
-     "A reference renderer on Embree. A dump is valid after every pass: ^C, --time-limit and even "
-     "a "
-     "kill leave all passes that were finished, and --resume goes on, with the columns of a render "
-     "that never stopped. psf-filter(1) with --follow filters a dump while it grows."},
+     "A reference renderer on Embree. A dump is valid after every pass: ^C, --time-limit and "
+     "even a kill leave all passes that were finished, and --resume goes on, with the columns of "
+     "a render that never stopped. psf-filter(1) with --follow filters a dump while it grows."},
     {"psf-bench",
      "Rows stand beside their targets, and --check makes a target that is missed exit code 1. "
-     "Other "
-     "work on the machine shows in the spread."}};
+     "Other work on the machine shows in the spread."}};
 
 }  // namespace
 

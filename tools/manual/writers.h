@@ -2,13 +2,16 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "manual/command_line.h"
 
 namespace psf::manual {
 
-// The page of `command`: the program, or one of its verbs. Source for man(1), section 1.
-[[nodiscard]] std::string man_page(const Command& program, const Command& command);
+// The page of `command`: the program, or one of its verbs. Source for man(1), section 1. It names
+// the pages of all `programs`.
+[[nodiscard]] std::string man_page(const std::vector<Command>& programs, const Command& program,
+                                   const Command& command);
 // The page's name, without section: "psf-filter".
 [[nodiscard]] std::string page_name(const Command& program, const Command& command);
 

@@ -37,17 +37,9 @@ struct ConvergeOptions {
   bool all_metrics = false, no_times = false, analytic = false;
 };
 
-void write(const std::string& folder, const study::ConvergeReport& report) {
-  const std::filesystem::path path(folder);
-  core::write_text_file((path / "converge.csv").string(), study::to_csv(report));
-  core::write_json_file((path / "converge.json").string(), study::to_json(report), 1);
-}
-
-void refuse_to_overwrite(const std::string& folder) {
-  const std::string path = (std::filesystem::path(folder) / "converge.json").string();
-  if (std::filesystem::exists(path)) {
-    throw Error(ErrorCode::usage, path + ": is there already; give another folder");
-  }
+void write(const study::ConvergePaths& paths, const study::ConvergeReport& report) {
+  core::write_text_file(paths.csv, study::to_csv(report));
+  core::write_json_file(paths.json, study::to_json(report), 1);
 }
 
 // What the report says of the study before it is made. Switches off the terms of `sets` whose
@@ -85,10 +77,10 @@ void make_folder(const ConvergeOptions& options, const StudyFolder& folder,
 
 void print_and_write(const ConvergeOptions& options, const std::string& folder,
                      const study::ConvergeReport& report) {
-  write(folder, report);
+  const study::ConvergePaths paths(folder);
+  write(paths, report);
   print_convergence(report);
-  fmt::print("wrote {} and converge.csv\n",
-             (std::filesystem::path(folder) / "converge.json").string());
+  fmt::print("wrote {} and converge.csv\n", paths.json);
   if (!options.common.json.empty()) {
     core::write_json_file(options.common.json, study::to_json(report), 1);
   }
@@ -99,7 +91,7 @@ void run_dumps(const ConvergeOptions& options) {
   const run::Dump dump(options.inputs.front());
   std::vector<std::string> notes;
   const StudyFolder folder(options.study, dump, notes);
-  refuse_to_overwrite(folder.path());
+  check_none_there(study::ConvergePaths(folder.path()));
   if (folder.passes().first != 0) {
     throw Error(ErrorCode::usage, "--passes: a convergence study begins with the first pass");
   }
@@ -149,11 +141,9 @@ std::string analytic_folder(const ConvergeOptions& options, study::AnalyticScene
 void check_analytic_files(const ConvergeOptions& options) {
   std::vector<std::string> outputs = {options.common.json};
   for (const study::AnalyticScene scene : kAnalyticScenes) {
-    const std::string folder = analytic_folder(options, scene);
-    refuse_to_overwrite(folder);
-    for (const char* name : {"converge.json", "converge.csv"}) {
-      outputs.push_back((std::filesystem::path(folder) / name).string());
-    }
+    const study::ConvergePaths paths(analytic_folder(options, scene));
+    check_none_there(paths);
+    outputs.insert(outputs.end(), {paths.json, paths.csv});
   }
   core::check_apart({}, outputs);
   check_files({}, {options.common.json});
@@ -162,14 +152,14 @@ void check_analytic_files(const ConvergeOptions& options) {
 study::ConvergeReport run_analytic(const ConvergeOptions& options, study::AnalyticScene scene,
                                    std::span<const filter::Parameters> sets) {
   const std::string name = study::Analytic(scene).name(), folder = analytic_folder(options, scene);
-  std::filesystem::create_directories(folder);
+  core::make_folder(folder);
   core::Progress progress(name, options.common.quiet);
   study::ConvergeReport report = study::check_analytic(
       scene, sets, folder,
       [&progress](std::uint64_t done, std::uint64_t total) { progress.advance(done, total); });
   progress.finish();
   report.version = kVersion;
-  write(folder, report);
+  write(study::ConvergePaths(folder), report);
   fmt::print("{}\n", name);
   print_checks(report);
   return report;

@@ -8,6 +8,7 @@
 #include "cli.h"
 #include "core/apart.h"
 #include "core/error.h"
+#include "core/output_file.h"
 #include "film/image.h"
 #include "film/picture.h"
 #include "filter/parameters/text.h"
@@ -108,11 +109,7 @@ void StudyFolder::make(std::vector<std::string> inputs, const std::vector<std::s
   // Nothing is made where --json cannot be; it may lie in the folder itself.
   const bool json_is_inside = std::filesystem::path(json).parent_path() == options_.folder;
   if (!json_is_inside) check_files({}, {json});
-  std::filesystem::create_directories(options_.folder, error);
-  if (!std::filesystem::is_directory(options_.folder)) {
-    throw Error(ErrorCode::io, fmt::format("{}: cannot be made as a folder: {}; give -o another",
-                                           options_.folder, error.message()));
-  }
+  core::make_folder(options_.folder);
   if (json_is_inside) check_files({}, {json});
 }
 

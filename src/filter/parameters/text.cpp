@@ -16,7 +16,8 @@
 namespace psf::filter {
 namespace {
 
-// The whole of `text` as a number.
+// The whole of `text` as a number. Unlike those of core::parse_number() it may be infinite, as a
+// threshold may.
 template <typename T>
 std::optional<T> number(std::string_view text) {
   T value{};

@@ -146,12 +146,12 @@ class Dump:
             picture = dump.filter(**tuning.best)
         """
         with shown(progress, "tune") as report:
-            figures, rows, best, notes = self._dump.tune(
+            result = self._dump.tune(
                 lists(parameters), no_weights, pass_range(passes, self.passes),
                 camera_number(self, camera), real("epsilon", epsilon),
                 whole_or_none("max_memory", max_memory), report)
-        warn(notes)
-        return Tuning(figures, rows, best, [self.path])
+        warn(result.notes)
+        return Tuning(result)
 
     def explain(self, pixel: tuple[int, int] | None = None, *, path: int | None = None,
                 camera: str | None = None, passes: Passes = None, no_weights: bool = False,

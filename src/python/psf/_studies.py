@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
@@ -48,16 +47,15 @@ class Tuning(Figures):
     ``best``: the choice, for ``dump.filter(**tuning.best)``.
     """
 
-    def __init__(self, text: str, rows: list[dict[str, Any]], best: dict[str, str],
-                 inputs: Iterable[str]) -> None:
-        super().__init__(text)
-        self._inputs = _absolute(inputs)
-        self.rows = [with_underscores(row) for row in rows]
-        self.best: dict[str, Any] = with_underscores(best)
+    def __init__(self, result: _psf.TuneResult) -> None:
+        super().__init__(result.json)
+        self._result = result
+        self.rows = [with_underscores(row) for row in result.rows]
+        self.best: dict[str, Any] = with_underscores(result.best)
 
     def save(self, path: FileName) -> None:
         """Writes the bytes of ``psf tune --json``; ``psf filter --tuned`` takes them."""
-        _psf.write_files(self._inputs, [(file_name("path", path), self._text)])
+        self._result.save(file_name("path", path))
 
     def __repr__(self) -> str:
         return f"<psf.Tuning of {len(self.rows)} sets, {'sure' if self['sure'] else 'not sure'}>"
@@ -70,16 +68,15 @@ class Convergence(Figures):
     first; pandas.DataFrame() takes it.
     """
 
-    def __init__(self, text: str, csv: str, rows: list[dict[str, Any]],
-                 inputs: Iterable[str]) -> None:
-        super().__init__(text)
-        self._csv, self._inputs = csv, _absolute(inputs)
-        self.rows = [with_underscores(row) for row in rows]
+    def __init__(self, result: _psf.ConvergeResult) -> None:
+        super().__init__(result.json)
+        self._result = result
+        self.rows = [with_underscores(row) for row in result.rows]
 
     def save(self, folder: FileName) -> None:
         """Writes converge.json and converge.csv as ``psf converge -o`` does; ``psf report`` takes
         the folder. A study that is there already stays."""
-        _psf.write_convergence(self._inputs, file_name("folder", folder), self._text, self._csv)
+        self._result.save(file_name("folder", folder))
 
     def __repr__(self) -> str:
         return f"<psf.Convergence of {len(self['series']) - 1} sets, n up to {self['n'][-1]}>"
@@ -110,11 +107,6 @@ class Explanation(Figures):
 
     def __repr__(self) -> str:
         return f"<psf.Explanation: {self.text().splitlines()[0]}>"
-
-
-def _absolute(paths: Iterable[str]) -> list[str]:
-    """Names that hold when the working directory changes."""
-    return [os.path.abspath(path) for path in paths]
 
 
 def warn(notes: Iterable[str], stacklevel: int = 3) -> None:
@@ -177,10 +169,10 @@ def converge(dumps: Dump | FileName | Iterable[Dump | FileName], reference: Pict
     picture = as_picture("reference", reference)._picture
     number = camera_number(opened[0], camera) if opened else 0
     with shown(progress, "converge") as report:
-        text, csv, rows, notes = _psf.converge(
+        result = _psf.converge(
             paths, picture, lists(parameters), no_weights, whole_or_none("passes", passes), number,
             real("epsilon", epsilon), all_metrics, times,
             [_render_text(one) for one in items(renders)],
             whole_or_none("max_memory", max_memory), report)
-    warn(notes)
-    return Convergence(text, csv, rows, paths)
+    warn(result.notes)
+    return Convergence(result)

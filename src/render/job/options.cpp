@@ -61,7 +61,7 @@ bool parse_shade_rate(const std::string& text, std::uint32_t& rate) {
   if (text == "1") return rate = 1, true;
   if (!text.starts_with("1/")) return false;
   const auto k = parse_number<std::uint32_t>(std::string_view(text).substr(2));
-  if (!k || *k == 0 || *k > 65536) return false;
+  if (!k || *k == 0 || *k > kMostShadeRate) return false;
   rate = *k;
   return true;
 }
@@ -133,9 +133,9 @@ Option triple(const char* name, Member member, const char* help) {
 }
 
 template <class Set>
-Option parsed(const char* name, const char* type, const char* group, const char* expected,
+Option parsed(const char* name, const char* type, const char* group, std::string expected,
               const char* help, Set set, const char* standard = "") {
-  Option option{name, type, group, help, expected, standard};
+  Option option{name, type, group, help, std::move(expected), standard};
   option.set = std::move(set);
   return option;
 }
@@ -181,7 +181,7 @@ void add_sampling(std::vector<Option>& table) {
       std::uint32_t{1}, std::uint32_t{65536},
       "continue every path so many times from its vertex, store the mean"));
   table.push_back(parsed(
-      "shade-rate", "1/K", kSampling, "1 or 1/K, K up to 65536",
+      "shade-rate", "1/K", kSampling, fmt::format("1 or 1/K, K up to {}", kMostShadeRate),
       "shade one path in K; the others have a vertex and its shadow rays alone",
       [](Job& job, const std::string& text) {
         return parse_shade_rate(text, job.settings.shade_rate);

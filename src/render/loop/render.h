@@ -12,6 +12,7 @@
 #include "formats/layout/head.h"
 #include "formats/write/writer.h"
 #include "render/light/integrator.h"
+#include "render/loop/shade_rate.h"
 #include "render/sample/sampler.h"
 #include "render/scene/scene.h"
 
@@ -22,7 +23,7 @@ struct RenderSettings {
   SamplerSettings sampler;
   std::uint64_t passes = 16;          // a pass has width * height paths for each camera
   std::vector<std::size_t> cameras;   // indices into Scene::cameras; empty: all
-  std::uint32_t shade_rate = 1;       // K, 1 to 65536: one path in K is shaded
+  std::uint32_t shade_rate = 1;       // K, 1 to kMostShadeRate: one path in K is shaded
   std::vector<std::string> channels;  // optional channels to write; empty: all
   double time_limit = std::numeric_limits<double>::infinity();  // seconds; the pass is finished
   bool replay = true;  // on resume, read the passes of the file back into the films

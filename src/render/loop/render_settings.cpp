@@ -15,8 +15,8 @@ namespace psf::render {
 
 void RenderSettings::validate(const Scene& scene) const {
   if (passes == 0) throw Error(ErrorCode::usage, "passes: at least 1 is needed");
-  if (shade_rate == 0 || shade_rate > 65536) {
-    throw Error(ErrorCode::usage, "shade rate: 1 to 1/65536 is possible");
+  if (shade_rate == 0 || shade_rate > kMostShadeRate) {
+    throw Error(ErrorCode::usage, fmt::format("shade rate: 1 to 1/{} is possible", kMostShadeRate));
   }
   if (scene.cameras.empty()) {
     throw Error(ErrorCode::bad_input, scene.name + ": there is no camera, give one");

@@ -35,7 +35,7 @@ std::uint32_t golden_step(std::uint32_t k) {
 }  // namespace
 
 ShadeRate::ShadeRate(std::uint32_t k) : k_(k), b_(1), c_(golden_step(k)) {
-  assert(k >= 1 && k <= 65536);
+  assert(k >= 1 && k <= kMostShadeRate);
   constexpr std::uint32_t kTrials = 512;  // enough to come near the best of large rates
   std::uint64_t best = 0;
   for (std::uint32_t b = 1; b < std::min(k, kTrials); ++b) {
