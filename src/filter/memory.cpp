@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "filter/channels.h"
+#include "filter/records.h"
 
 namespace psf::filter {
 namespace {
