@@ -3,6 +3,7 @@
 // digit is the test of the Python package.
 #include <atomic>
 #include <cmath>
+#include <filesystem>
 #include <thread>
 
 #include "catch.h"
@@ -64,6 +65,9 @@ TEST_CASE("tuning chooses the least error and gives parameters to filter with") 
   CHECK(tuned.notes.size() == 1);  // no visibility, no directions for gloss
   CHECK_THAT(tuned.json, StartsWith("{\n \"kind\": \"tune\""));
   CHECK(dump.filter(tuned.best).pictures.size() == 1);
+  tuned.save(folder / "tuned.json");
+  CHECK(psf::tests::read_text(folder / "tuned.json") == tuned.json);
+  CHECK_THROWS_WITH(tuned.save(folder / "a.pvb"), ContainsSubstring("overwrite the input"));
   CHECK_THROWS_WITH(dump.tune({}), StartsWith("`sets`"));
   psf::TuneOptions other;
   other.camera = 1;
@@ -95,6 +99,10 @@ TEST_CASE("convergence has a row for each set and n, the errors of filter runs")
   CHECK(value(study.rows[8], "relMSE") == Approx(mean).epsilon(1e-5));
   CHECK_THAT(study.csv, StartsWith("id,r0,delta,"));
   CHECK_THAT(study.json, StartsWith("{\n \"kind\": \"converge\""));
+  study.save(folder / "study");
+  CHECK(psf::tests::read_text(folder / "study/converge.json") == study.json);
+  CHECK(psf::tests::read_text(folder / "study/converge.csv") == study.csv);
+  CHECK_THROWS_WITH(study.save(folder / "study"), ContainsSubstring("is there already"));
   options.render_json = {R"({"passes": 4})"};
   CHECK_THROWS_WITH(psf::converge(dumps, reference, sets("2px"), options),
                     StartsWith("`render_json`: has no number 'output_seconds'"));
@@ -116,6 +124,8 @@ TEST_CASE("an explanation outlives its dump, and writes JSON and a point cloud")
   why.save(folder / "why.ply");
   CHECK_THAT(psf::tests::read_text(folder / "why.ply"), StartsWith("ply\n"));
   CHECK_THROWS_WITH(why.save(folder / "why.txt"), ContainsSubstring(".json or .ply"));
+  std::filesystem::create_symlink("a.pvb", folder / "dump.json");
+  CHECK_THROWS_WITH(why.save(folder / "dump.json"), ContainsSubstring("overwrite the input"));
 }
 
 TEST_CASE("a call is ended by its own thread's word alone") {
