@@ -1,5 +1,5 @@
-// The channels of version 1 that have a meaning: README.md, "Channels", in its order. pvb.h, pvb.py,
-// that table and what psf-render writes are checked against this one by tests.
+// The channels of version 1 that have a meaning: README.md, "Channels", in its order. pvb.h,
+// pvb.py, that table and what psf-render writes are checked against this one by tests.
 #pragma once
 
 #include <array>

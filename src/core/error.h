@@ -16,9 +16,9 @@ enum class ErrorCode : int {
   interrupted = 130  // ^C
 };
 
-// The one exception of the project, for bad input and failed I/O. The message is one line that names
-// the file, the place in it and the remedy: "room.json: /materials/2/roughness: expected a number in
-// [0, 1]". Written Error{io} where only the kind matters.
+// The one exception of the project, for bad input and failed I/O. The message is one line that
+// names the file, the place in it and the remedy: "room.json: /materials/2/roughness: expected a
+// number in [0, 1]". Written Error{io} where only the kind matters.
 class [[gnu::visibility("default")]] Error : public std::runtime_error {
  public:
   // `message`: one line, which what() returns.

@@ -17,18 +17,18 @@ BlockExplainer::BlockExplainer(const filter::Records& records, const filter::Blo
     : parameters_(parameters) {
   std::vector<float> given;
   filter::radii(parameters.radius, records, block, given);
-  average_ = filter::estimate(records, given, block, parameters);
+  estimates_ = filter::estimate(records, given, block, parameters);
   if (parameters.iterations > 1) {
     filter::Parameters fewer = parameters;
     --fewer.iterations;
     before_ = filter::estimate(records, given, block, fewer).c_bar;
   }
-  radius_in_world_ = average_.radius.empty() ? given : average_.radius;
+  radius_in_world_ = estimates_.radius.empty() ? given : estimates_.radius;
   scaled_.emplace(records, radius_in_world_);
   records_ = scaled_->records();
   radius_ = scaled_->radius();
   weights_.emplace(records_, parameters.weights);
-  roles_.of = average_.roles;
+  roles_.of = estimates_.roles;
   std::vector<Vec3> positions;
   for (std::uint32_t j = 0; j < records.size(); ++j) {
     if (roles_.of[j] != filter::Role::source) continue;
@@ -37,7 +37,7 @@ BlockExplainer::BlockExplainer(const filter::Records& records, const filter::Blo
   }
   search_ = search::make_search(search::Kind::brute, positions);
   if (filter::info(parameters.estimator).is_over_area) {
-    area_ = filter::areas(records_, roles_, block);
+    area_ = filter::disk_areas(records_, roles_, block);
   }
 }
 
@@ -49,8 +49,8 @@ ExplainedPath BlockExplainer::explain(std::uint32_t i, std::vector<ExplainedPair
   path.is_input = filter::is_input(roles_.of[i]);
   if (path.fate == PathFate::no_vertex || path.fate == PathFate::left_out) return path;
   path.radius = radius_in_world_[i];
-  path.c_bar = average_.c_bar[i];
-  path.neighbors = average_.neighbors[i];
+  path.c_bar = estimates_.c_bar[i];
+  path.neighbors = estimates_.neighbors[i];
   find_pairs(i, pairs, room);
   path.in_ball = static_cast<std::uint32_t>(pairs.size());
   if (path.neighbors == 0) adopt(i, pairs);
@@ -76,11 +76,11 @@ PathFate BlockExplainer::fate_of(std::uint32_t i) const {
   if (role == filter::Role::left_out) return PathFate::left_out;
   if (!filter::is_query(role)) return PathFate::no_vertex;
   const Rgb u = records_.unfiltered.empty() ? Rgb(0, 0, 0) : records_.unfiltered[i];
-  const Vec3 filtered = u + records_.throughput[i] * average_.c_bar[i];
+  const Vec3 filtered = u + records_.throughput[i] * estimates_.c_bar[i];
   const Vec3 input = u + records_.throughput[i] * records_.contribution[i];
   const bool finite = is_finite(filtered) && (role == filter::Role::query || is_finite(input));
   if (!finite) return PathFate::overflowed;
-  return average_.neighbors[i] == 0 ? PathFate::orphan : PathFate::averaged;
+  return estimates_.neighbors[i] == 0 ? PathFate::orphan : PathFate::averaged;
 }
 
 void BlockExplainer::find_pairs(std::uint32_t i, std::vector<ExplainedPair>& pairs,
@@ -130,7 +130,7 @@ void BlockExplainer::adopt(std::uint32_t i, std::vector<ExplainedPair>& pairs) c
 }
 
 double BlockExplainer::scale_of(std::uint32_t i, std::span<const ExplainedPair> pairs) const {
-  if (is_disk(i) && average_.neighbors[i] > 0) {
+  if (is_disk(i) && estimates_.neighbors[i] > 0) {
     return 1 / (std::numbers::pi * double{radius_[i]} * double{radius_[i]});
   }
   const auto count = std::count_if(pairs.begin(), pairs.end(),

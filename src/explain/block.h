@@ -47,7 +47,7 @@ class BlockExplainer {
   void adopt(std::uint32_t i, std::vector<ExplainedPair>& pairs) const;
 
   const filter::Parameters& parameters_;
-  filter::Estimates average_;
+  filter::Estimates estimates_;
   std::vector<Rgb> before_;             // c_bar of the iteration before the last
   std::vector<float> radius_in_world_;  // r_i, as chosen, world units
   std::optional<filter::Scaled> scaled_;

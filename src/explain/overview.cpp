@@ -1,4 +1,5 @@
-// The head of an explained pixel's text: the pixel, its vertices, and what it is against its own paths.
+// The head of an explained pixel's text: the pixel, its vertices, and what it is against its own
+// paths.
 #include <fmt/format.h>
 
 #include <array>
@@ -11,7 +12,7 @@
 
 #include "core/text.h"
 #include "explain/words.h"
-#include "filter/parameters/text.h"
+#include "filter/parameters/values.h"
 #include "search/ball.h"
 
 namespace psf::explain {

@@ -54,16 +54,83 @@ std::size_t first_term(std::uint32_t bits, std::uint32_t any) {
   return k;
 }
 
+// The vertices of a file, one row each.
 class Rows {
  public:
+  Rows(const ExplainResult& explanation, const Attribution& whence)
+      : e_(explanation), pixel_(luminance(whence.pixel.filtered)), any_(e_.record.size(), 0) {
+    for (const ExplainedPair& pair : e_.pairs) any_[pair.vertex] |= pair.refusers;
+    for (const SourceShare& source : whence.sources) {
+      largest_ = std::max(largest_, fraction(source.share));
+    }
+  }
+
+  // The properties of a row.
+  static std::vector<exports::PlyProperty> properties() {
+    std::vector<exports::PlyProperty> all;
+    for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) all.push_back({"float", name});
+    for (const char* name : {"red", "green", "blue"}) all.push_back({"uchar", name});
+    for (const char* name :
+         {"kind", "share", "excess", "paths", "distance", "refused_by", "x", "y"}) {
+      all.push_back({"float", std::string("scalar_") + name});
+    }
+    all.push_back({"double", "scalar_record"});
+    return all;
+  }
+
+  void add(std::uint32_t v, const Point& point) {
+    const SourceShare none;
+    const SourceShare& source = point.source != nullptr ? *point.source : none;
+    const double share = fraction(source.share);
+    const Vec3& x = e_.vertices.position[v];
+    const Vec3 n = e_.vertices.normal.empty() ? Vec3(0, 0, 0) : e_.vertices.normal[v];
+    for (const float value : {x.x, x.y, x.z, n.x, n.y, n.z}) put(value);
+    for (const std::uint8_t value : colour(v, point, share)) put(value);
+    const std::uint16_t camera = e_.vertices.camera.empty() ? 0 : e_.vertices.camera[v];
+    const std::uint32_t width = e_.widths[camera];
+    for (const double value :
+         {static_cast<double>(point.kind), share, fraction(source.excess),
+          static_cast<double>(source.paths), double{point.distance},
+          static_cast<double>(point.refused_by), static_cast<double>(e_.vertices.pixel[v] % width),
+          static_cast<double>(e_.vertices.pixel[v] / width)}) {
+      put(static_cast<float>(value));
+    }
+    put(static_cast<double>(e_.record[v]));
+    ++count_;
+  }
+
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+  [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
+
+ private:
   template <typename T>
   void put(T value) {
     const auto* bytes = reinterpret_cast<const std::byte*>(&value);
     bytes_.insert(bytes_.end(), bytes, bytes + sizeof value);
   }
-  [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
 
- private:
+  // Of the pixel.
+  [[nodiscard]] double fraction(const Colour& colour) const {
+    return pixel_ > 0 ? luminance(colour) / pixel_ : 0;
+  }
+
+  [[nodiscard]] std::array<std::uint8_t, 3> colour(std::uint32_t v, const Point& point,
+                                                   double share) const {
+    if (point.kind == Kind::own) return {255, 0, 0};
+    if (point.kind == Kind::refused) {
+      const auto& of = kTermColours[first_term(point.refused_by, any_[v])];
+      return {of[0], of[1], of[2]};
+    }
+    const double root = largest_ > 0 && share > 0 ? std::sqrt(share / largest_) : 0;
+    const auto grey = static_cast<std::uint8_t>(std::lround(70 + 185 * std::min(root, 1.0)));
+    return {grey, grey, grey};
+  }
+
+  const ExplainResult& e_;
+  double pixel_;                    // luminance
+  std::vector<std::uint32_t> any_;  // by vertex: the terms that refuse it in some ball
+  double largest_ = 0;              // fraction of a source
+  std::uint64_t count_ = 0;
   std::vector<std::byte> bytes_;
 };
 
@@ -71,68 +138,19 @@ class Rows {
 
 std::uint64_t write_ply(const ExplainResult& explanation, const Attribution& whence,
                         const std::string& path) {
-  const ExplainResult& e = explanation;
-  const std::vector<Point> points = points_of(e, whence);
-  std::vector<std::uint32_t> any(e.record.size(), 0);
-  for (const ExplainedPair& pair : e.pairs) any[pair.vertex] |= pair.refusers;
-  const double pixel = luminance(whence.pixel.filtered);
-  const auto fraction = [pixel](const Colour& colour) {
-    return pixel > 0 ? luminance(colour) / pixel : 0;
-  };
-  double largest = 0;
-  for (const SourceShare& source : whence.sources) {
-    largest = std::max(largest, fraction(source.share));
-  }
-
-  Rows rows;
-  std::uint64_t count = 0;
+  const std::vector<Point> points = points_of(explanation, whence);
+  Rows rows(explanation, whence);
   for (std::uint32_t v = 0; v < points.size(); ++v) {
-    const Point& point = points[v];
-    if (!point.used) continue;
-    ++count;
-    const SourceShare none;
-    const SourceShare& source = point.source != nullptr ? *point.source : none;
-    const double share = fraction(source.share);
-    const Vec3& x = e.vertices.position[v];
-    const Vec3 n = e.vertices.normal.empty() ? Vec3(0, 0, 0) : e.vertices.normal[v];
-    for (const float value : {x.x, x.y, x.z, n.x, n.y, n.z}) rows.put(value);
-    std::array<std::uint8_t, 3> colour = {255, 0, 0};
-    if (point.kind == Kind::refused) {
-      const auto& of = kTermColours[first_term(point.refused_by, any[v])];
-      colour = {of[0], of[1], of[2]};
-    } else if (point.kind == Kind::averaged) {
-      const double root = largest > 0 && share > 0 ? std::sqrt(share / largest) : 0;
-      colour.fill(static_cast<std::uint8_t>(std::lround(70 + 185 * std::min(root, 1.0))));
-    }
-    for (const std::uint8_t value : colour) rows.put(value);
-    const std::uint16_t camera = e.vertices.camera.empty() ? 0 : e.vertices.camera[v];
-    const std::uint32_t width = e.widths[camera];
-    for (const double value :
-         {static_cast<double>(point.kind), share, fraction(source.excess),
-          static_cast<double>(source.paths), double{point.distance},
-          static_cast<double>(point.refused_by), static_cast<double>(e.vertices.pixel[v] % width),
-          static_cast<double>(e.vertices.pixel[v] / width)}) {
-      rows.put(static_cast<float>(value));
-    }
-    rows.put(static_cast<double>(e.record[v]));
+    if (points[v].used) rows.add(v, points[v]);
   }
-
-  std::vector<exports::PlyProperty> properties;
-  for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) properties.push_back({"float", name});
-  for (const char* name : {"red", "green", "blue"}) properties.push_back({"uchar", name});
-  for (const char* name :
-       {"kind", "share", "excess", "paths", "distance", "refused_by", "x", "y"}) {
-    properties.push_back({"float", std::string("scalar_") + name});
-  }
-  properties.push_back({"double", "scalar_record"});
   core::OutputFile output(path);
   exports::ExportFile file(output.temporary_path(), path);
-  file.write(exports::ply_header("psf explain: the vertices that play a part in a pixel", count,
-                                 properties));
+  file.write(exports::ply_header("psf explain: the vertices that play a part in a pixel",
+                                 rows.count(), Rows::properties()));
   file.write(rows.bytes());
   file.close();
   output.commit();
-  return count;
+  return rows.count();
 }
 
 }  // namespace psf::explain

@@ -1,5 +1,6 @@
-// The channels that the filter looks at: each by its name in files and as the member of that name of
-// Records, of run::BlockRecords and of run::ChannelSet. What loops over all channels, loops here.
+// The channels that the filter looks at: each by its name in files and as the member of that name
+// of Records, of run::BlockRecords and of run::ChannelSet. What loops over all channels, loops
+// here.
 #pragma once
 
 #include <string_view>

@@ -58,7 +58,7 @@ class Many {
     result_.statistics.resize(radii.size());
   }
 
-  ManyAverages run() {
+  ManyEstimates run() {
     const Scales scales(radii_, block_.n);
     if (!can_share(parameters_) || !scales.can_share() || !in_one_traversal(scales)) one_by_one();
     return std::move(result_);
@@ -84,7 +84,7 @@ class Many {
     Roles roles = find_roles(records, block_, parameters_, counts);
     if (roles.sources.empty()) return false;
     std::vector<float> area;
-    if (info(parameters_.estimator).is_over_area) area = areas(records, roles, block_);
+    if (info(parameters_.estimator).is_over_area) area = disk_areas(records, roles, block_);
     const Weights weights(records, terms_in_use(records, parameters_.weights));
     const Problem problem{records, roles, scaled.radius(), weights, area};
     engine::RingEngine engine(problem, scales.values, basis);
@@ -190,13 +190,14 @@ class Many {
   const Parameters& parameters_;
   std::span<const Radius> radii_;
   Receiver& receiver_;
-  ManyAverages result_;
+  ManyEstimates result_;
 };
 
 }  // namespace
 
-ManyAverages average_many(const Records& records, const Block& block, const Parameters& parameters,
-                          std::span<const Radius> radii, Receiver& receiver) {
+ManyEstimates estimate_many(const Records& records, const Block& block,
+                            const Parameters& parameters, std::span<const Radius> radii,
+                            Receiver& receiver) {
   assert(!radii.empty());
   return Many(records, block, parameters, radii, receiver).run();
 }

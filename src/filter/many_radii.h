@@ -32,7 +32,7 @@ class Receiver {
   static constexpr std::size_t kMostQueries = std::size_t{1} << 14;  // in a slab
 };
 
-struct ManyAverages {
+struct ManyEstimates {
   std::vector<Role> roles;             // role of each record, as in Estimates
   std::vector<Statistics> statistics;  // one per radius; the seconds are for all radii together
 };
@@ -41,9 +41,9 @@ struct ManyAverages {
 // and count; only the order of sums differs. Every query of the block is given to `receiver` for
 // every radius. Where the estimator shares a traversal there is one for all, but iterations take
 // one per radius. Throws what estimate() and the receiver throw.
-[[nodiscard]] ManyAverages average_many(const Records& records, const Block& block,
-                                        const Parameters& parameters, std::span<const Radius> radii,
-                                        Receiver& receiver);
+[[nodiscard]] ManyEstimates estimate_many(const Records& records, const Block& block,
+                                          const Parameters& parameters,
+                                          std::span<const Radius> radii, Receiver& receiver);
 
 // Bytes per record in addition to those of memory_per_record().
 inline constexpr std::uint64_t kManyBytesPerRecord = sizeof(double);

@@ -52,12 +52,13 @@ struct FilterResult {
   double neighbors = 0;        // records averaged, mean over the queries
 };
 
-// A path-vertex buffer that is read. A value that moves and owns the open file; a moved-from one may
-// only be destroyed or assigned to. `refresh()` aside, several threads may call it at once.
+// A path-vertex buffer that is read. A value that moves and owns the open file; a moved-from one
+// may only be destroyed or assigned to. `refresh()` aside, several threads may call it at once.
 class PSF_API Dump {
  public:
-  // Opens a file up to its last commit; it may still be growing. Throws Error{io} where it cannot be
-  // opened, Error{bad_input} where it is no path-vertex buffer, is damaged, or has no committed pass.
+  // Opens a file up to its last commit; it may still be growing. Throws Error{io} where it cannot
+  // be opened, Error{bad_input} where it is no path-vertex buffer, is damaged, or has no committed
+  // pass.
   explicit Dump(const std::string& path);
   ~Dump();                           // Closes the file.
   Dump(Dump&&) noexcept;             // Takes over the open file.
@@ -70,12 +71,13 @@ class PSF_API Dump {
   [[nodiscard]] std::string metadata() const;     // JSON, as in the file
   [[nodiscard]] const std::vector<Channel>& channels() const;  // in the order of the file
   [[nodiscard]] const std::vector<Camera>& cameras() const;    // in the order of the file
-  // Takes in what was committed since; returns whether there was anything. Throws Error{usage} where
-  // another call is at work on the dump.
+  // Takes in what was committed since; returns whether there was anything. Throws Error{usage}
+  // where another call is at work on the dump.
   bool refresh();
 
   // Records [first, first + count) of a channel as stored: `out` has count * components values.
-  // Thread-safe. Throws Error{bad_input} for a channel that is not there or a checksum that is wrong.
+  // Thread-safe. Throws Error{bad_input} for a channel that is not there or a checksum that is
+  // wrong.
   void read(std::string_view channel, std::uint64_t first, std::uint64_t count,
             std::span<std::byte> out) const;
   // The same as floats, of channels of floating point and of octahedral ones (3 a record).
@@ -86,7 +88,8 @@ class PSF_API Dump {
   [[nodiscard]] FilterResult filter(const Parameters& parameters = {},
                                     const FilterOptions& options = {}) const;
   // What psf sweep does, without files: every set, measured against a reference of one camera by
-  // the metrics of these names; empty: relMSE. Sets that differ in r0 and delta alone share the work.
+  // the metrics of these names; empty: relMSE. Sets that differ in r0 and delta alone share the
+  // work.
   [[nodiscard]] SweepResult sweep(const Picture& reference, std::span<const Parameters> sets,
                                   std::span<const std::string> metrics = {},
                                   const FilterOptions& options = {}, std::size_t camera = 0) const;
@@ -100,8 +103,8 @@ class PSF_API Dump {
   [[nodiscard]] Explanation explain(std::uint32_t x, std::uint32_t y,
                                     const Parameters& parameters = {},
                                     const ExplainOptions& options = {}) const;
-  // The same of one path, by its number in the dump. Throws as filter() does, and Error{usage} where
-  // it is not among the passes chosen.
+  // The same of one path, by its number in the dump. Throws as filter() does, and Error{usage}
+  // where it is not among the passes chosen.
   [[nodiscard]] Explanation explain_path(std::uint64_t path, const Parameters& parameters = {},
                                          const ExplainOptions& options = {}) const;
 
@@ -118,13 +121,13 @@ struct WriterOptions {
   std::string metadata;
 };
 
-// Writes a dump. The file appears under its name with its first pass, whole; what is not committed is
-// not in it. Calls may come from several threads, one after the other.
+// Writes a dump. The file appears under its name with its first pass, whole; what is not committed
+// is not in it. Calls may come from several threads, one after the other.
 class PSF_API DumpWriter {
  public:
-  // Starts a file. `cameras`: at least one; they stand for those that the metadata may name, of which those of the
-  // same name keep their matrices. Throws Error{io}, Error{bad_input} for channels, cameras or
-  // metadata that break the rules of the format.
+  // Starts a file. `cameras`: at least one; they stand for those that the metadata may name, of
+  // which those of the same name keep their matrices. Throws Error{io}, Error{bad_input} for
+  // channels, cameras or metadata that break the rules of the format.
   DumpWriter(const std::string& path, std::span<const Camera> cameras,
              std::span<const Channel> channels, const WriterOptions& options = {});
   ~DumpWriter();                                 // Leaves what is committed, or no file.

@@ -18,7 +18,7 @@ namespace psf {
 // What of a dump is explained, beside the pixel and the parameters of the filter.
 struct ExplainOptions {
   Passes passes;           // the passes whose paths are explained
-  std::size_t camera = 0;  // the pixel's
+  std::size_t camera = 0;  // the pixel's; a path has its own
   // Called now and then by the thread that explains, with numbers of paths.
   std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};
 };

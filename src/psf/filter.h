@@ -21,8 +21,8 @@ struct Camera {
   double angle_per_pixel = 0;  // radians; for radii in pixels
 };
 
-// Views of n records, which are one block: a record a path, in path order. The first four are needed,
-// the others may be empty. formats/README.md, "Channels", has the exact meaning of each.
+// Views of n records, which are one block: a record a path, in path order. The first four are
+// needed, the others may be empty. formats/README.md, "Channels", has the exact meaning of each.
 struct Records {
   std::span<const float> position;       // (n, 3), x_i, world units
   std::span<const float> throughput;     // (n, 3), alpha_i

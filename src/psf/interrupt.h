@@ -9,8 +9,8 @@
 namespace psf {
 
 // As long as it is there, calls of its thread throw Error{interrupted} at their next step once
-// `stopped` is true, which any thread may say. The calls of other threads go on. The thread that made
-// it destroys it, of several the last one first.
+// `stopped` is true, which any thread may say. The calls of other threads go on. The thread that
+// made it destroys it, of several the last one first.
 class PSF_API Interruptible {
  public:
   // Begins with the calls that this thread makes from now on; `stopped` is borrowed.

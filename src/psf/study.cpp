@@ -83,7 +83,7 @@ TuneRow to_row(const study::TuneRow& row) {
           row.bias_sq,
           row.variance,
           row.neighbors,
-          row.distance,
+          row.sigmas_above_least,
           row.may_be_better};
 }
 

@@ -66,7 +66,8 @@ auto interruptible(const py::object& progress, const Work& work) {
   return std::move(*result);
 }
 
-// Threads that Python does not wait for end before the interpreter does: interrupt() ends all calls.
+// Threads that Python does not wait for end before the interpreter does: interrupt() ends all
+// calls.
 inline void end_at_exit(void (*interrupt)() noexcept) {
   py::module_::import("atexit").attr("register")(py::cpp_function([interrupt] {
     const py::gil_scoped_release released;

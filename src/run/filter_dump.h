@@ -51,8 +51,8 @@ void check(const Dump& dump, const FilterRequest& run);
 
 // Filters a dump. The next block is read while one is filtered. The memory is that of
 // MemoryEstimate, whatever the length of the dump. Throws Error{limit} before any work where
-// `max_memory` cannot be kept, Error{interrupted}, and what check(), Dump, Blocks and estimate() throw;
-// the errors of a block come after the blocks before it are in the pictures.
+// `max_memory` cannot be kept, Error{interrupted}, and what check(), Dump, Blocks and estimate()
+// throw; the errors of a block come after the blocks before it are in the pictures.
 [[nodiscard]] FilterResult filter_dump(const Dump& dump, const FilterRequest& run);
 
 // Filters a dump that is still being written, until it is closed or has the last pass of the

@@ -9,7 +9,7 @@
 #include "core/parallel.h"
 #include "core/seconds.h"
 #include "filter/blocks.h"
-#include "filter/parameters/text.h"
+#include "filter/parameters/values.h"
 #include "filter/radius.h"
 #include "run/block_loop.h"
 #include "run/many_adder.h"
@@ -104,11 +104,11 @@ class ManyFilter {
     const std::size_t cameras = dump_.cameras().size();
     const std::span<ManyPictures> pictures =
         std::span(outcome_.pictures).subspan(k % run_.parts * cameras, cameras);
-    filter::ManyAverages averages;
+    filter::ManyEstimates averages;
     adder_.start(records, pictures);
     core::undisturbed([&] {
       averages =
-          filter::average_many(visit.records, visit.block, run_.parameters, run_.radii, adder_);
+          filter::estimate_many(visit.records, visit.block, run_.parameters, run_.radii, adder_);
     });
     outcome_.overflows += adder_.overflows();
     for (std::size_t i = 0; i < records.size(); ++i) {

@@ -13,7 +13,7 @@
 #include "core/parallel.h"
 #include "filter/channels.h"
 #include "filter/memory.h"
-#include "filter/parameters/text.h"
+#include "filter/parameters/values.h"
 
 namespace psf::run {
 namespace {

@@ -59,7 +59,8 @@ void check_replicates(std::span<const std::string> dumps, std::uint64_t passes);
 
 // Runs a convergence study. `dumps`: the replicates, of one scene and with different seeds. The
 // first series returned is unfiltered; then there is one for each set, in their order. The picture
-// at n is what psf filter --passes 0:n gives. Throws what check_replicates() and filter_many() throw.
+// at n is what psf filter --passes 0:n gives. Throws what check_replicates() and filter_many()
+// throw.
 [[nodiscard]] std::vector<ConvergeSeries> converge(std::span<const std::string> dumps,
                                                    const metrics::Reference& reference,
                                                    std::span<const Rgb> reference_picture,

@@ -37,7 +37,8 @@ inline constexpr int kStudyFormat = 1;  // raised where readers have to know of 
 // Each parameter as text by the name of its option, as psf filter takes it.
 [[nodiscard]] Json to_json(const filter::Parameters& parameters);
 
-// The noise of the picture without filter, an entry a camera; the share is null where there is none.
+// The noise of the picture without filter, an entry a camera; the share is null where there is
+// none.
 [[nodiscard]] Json describe_noise(std::span<const run::NoiseShare> noise,
                                   std::span<const formats::CameraInfo> cameras);
 

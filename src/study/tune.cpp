@@ -2,62 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/error.h"
 #include "run/median_around.h"
+#include "study/tiles.h"
 #include "study/variants.h"
 
 namespace psf::study {
 namespace {
 
-constexpr std::size_t kTile = 8;  // pixels; noise of tiles is taken for independent
-
 constexpr std::size_t kParts = 4, kFewParts = 2;
 
 using Picture = std::vector<Rgb>;
 using Parts = std::vector<Picture>;  // the same picture of every part
-
-// Sums over tiles of the picture, so that means have standard errors although neighbouring pixels
-// share neighbours.
-class Tiles {
- public:
-  Tiles() = default;
-  Tiles(std::size_t width, std::size_t height)
-      : width_(width),
-        columns_((width + kTile - 1) / kTile),
-        values_(columns_ * ((height + kTile - 1) / kTile)) {}
-
-  void add(std::size_t pixel, double value) {
-    values_[pixel / width_ / kTile * columns_ + pixel % width_ / kTile] += value;
-    sum_ += value;
-  }
-  // Adds the sums of another picture of the same size.
-  void add(const Tiles& others) {
-    for (std::size_t k = 0; k < values_.size(); ++k) values_[k] += others.values_[k];
-    sum_ += others.sum_;
-  }
-  [[nodiscard]] double sum() const { return sum_; }
-  [[nodiscard]] double standard_error() const { return standard_error_beyond(1, Tiles()); }
-  // The standard error of `factor` times this sum minus that of `others`; infinite for one tile.
-  [[nodiscard]] double standard_error_beyond(double factor, const Tiles& others) const {
-    const auto count = static_cast<double>(values_.size());
-    double sum = 0, squares = 0;
-    for (std::size_t k = 0; k < values_.size(); ++k) {
-      const double value = factor * values_[k] - (others.values_.empty() ? 0 : others.values_[k]);
-      sum += value;
-      squares += value * value;
-    }
-    if (count < 2) return std::numeric_limits<double>::infinity();
-    const double variance = std::max(0.0, (squares - sum * sum / count) / (count - 1));
-    return std::sqrt(variance * count);
-  }
-
- private:
-  std::size_t width_ = 1, columns_ = 1;
-  std::vector<double> values_;
-  double sum_ = 0;
-};
 
 class Tuner {
  public:
@@ -285,7 +242,7 @@ class Tuner {
       if (row == choice) continue;
       const double noise = tiles_[row].standard_error_beyond(1, best);
       const double above = rows[row].error - rows[choice].error;
-      rows[row].distance = noise > 0 ? above / noise : 0;
+      rows[row].sigmas_above_least = noise > 0 ? above / noise : 0;
       rows[row].may_be_better = may_be_better(tiles_[row], best, of_u);
     }
   }

@@ -29,7 +29,7 @@ struct TuneRow {
   // changes.
   double bias_sq = 0, variance = 0;
   // The difference of this row's error and the least error, in standard errors of the difference.
-  double distance = 0;
+  double sigmas_above_least = 0;
   // Whether this row's error may be less than the error of the choice over 1 + kTolerance.
   bool may_be_better = false;
   double neighbors = 0;

@@ -13,7 +13,7 @@ Json row_to_json(const TuneRow& row) {
           {"bias_sq", row.bias_sq},
           {"variance", row.variance},
           {"neighbors", row.neighbors},
-          {"sigmas_above_least", row.distance},
+          {"sigmas_above_least", row.sigmas_above_least},
           {"may_be_better", row.may_be_better}};
 }
 

@@ -1,5 +1,5 @@
-// Attribution a pixel's light came: what a term's absence and presence would give, and leaks that were
-// put there are found.
+// Attribution a pixel's light came: what a term's absence and presence would give, and leaks that
+// were put there are found.
 #include "explain/attribution.h"
 
 #include <array>

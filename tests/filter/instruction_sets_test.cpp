@@ -90,7 +90,7 @@ TEST_CASE("Every instruction set gives the same bytes for many radii") {
     parameters.count_refusals = false;
     Keep keep;
     static_cast<void>(
-        filter::average_many(c.set.view(), {0, 2, 1.5, c.cameras}, parameters, radii, keep));
+        filter::estimate_many(c.set.view(), {0, 2, 1.5, c.cameras}, parameters, radii, keep));
     return keep.values;
   };
   for (const unsigned terms : {0u, 7u, 16u, 255u}) {

@@ -18,7 +18,7 @@ using filter::Role;
 using tests::EngineCase;
 
 struct Result {
-  filter::ManyAverages many;
+  filter::ManyEstimates many;
   std::vector<std::vector<Rgb>> c_bar;  // by radius, record
   std::size_t seen = 0;                 // averages
 };
@@ -52,7 +52,7 @@ Result many(const EngineCase& c, const filter::Block& block, const std::vector<R
     std::atomic<std::size_t> seen_ = 0;
   };
   Keep keep(r);
-  r.many = filter::average_many(c.set.view(), block, parameters, radii, keep);
+  r.many = filter::estimate_many(c.set.view(), block, parameters, radii, keep);
   return r;
 }
 

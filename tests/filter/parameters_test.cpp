@@ -7,6 +7,7 @@
 #include "catch.h"
 #include "core/error.h"
 #include "filter/parameters/text.h"
+#include "filter/parameters/values.h"
 
 namespace psf {
 namespace {

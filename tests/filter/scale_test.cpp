@@ -127,7 +127,7 @@ std::vector<std::vector<Rgb>> many(const EngineCase& c, const std::vector<filter
   Keep keep(radii.size(), c.set.size());
   filter::Parameters parameters = c.parameters;
   parameters.count_refusals = false;
-  (void)filter::average_many(c.set.view(), {0, 1, 1.5, c.cameras}, parameters, radii, keep);
+  (void)filter::estimate_many(c.set.view(), {0, 1, 1.5, c.cameras}, parameters, radii, keep);
   return std::move(keep.c_bar);
 }
 

@@ -1,6 +1,6 @@
 // The library that is installed, through its own headers alone: what is written is read back,
-// a file and arrays give the same picture, and errors say what is wrong. That its pictures are those
-// of psf filter, byte for byte, is the test of the package.
+// a file and arrays give the same picture, and errors say what is wrong. That its pictures are
+// those of psf filter, byte for byte, is the test of the package.
 #include <cstring>
 
 #include "catch.h"

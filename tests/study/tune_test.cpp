@@ -73,8 +73,8 @@ TEST_CASE("The error that halves estimate is the error against the truth") {
 constexpr std::size_t kTuneSide = 64;  // pixels
 constexpr std::size_t kPasses = 8;
 
-// A square of kTuneSide x kTuneSide pixels, seen from above at distance 1, with noise of mean `truth(x)` a
-// column, `u` added to each path.
+// A square of kTuneSide x kTuneSide pixels, seen from above at distance 1, with noise of mean
+// `truth(x)` a column, `u` added to each path.
 template <class Truth, class Unfiltered>
 RecordSet square(const Truth& truth, const Unfiltered& u) {
   std::mt19937 random(3);

@@ -1,5 +1,5 @@
-// A program's command line as plain values, read from CLI11's tables: what man pages and completions
-// are written from.
+// A program's command line as plain values, read from CLI11's tables: what man pages and
+// completions are written from.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -34,8 +34,8 @@ struct Command {
 
 [[nodiscard]] Command describe(const CLI::App& app);
 
-// What a value's name says: words of small letters can be typed, FILE, DIR and .ending are files and
-// folders, other capitals stand for something. Braces hold words of any letters.
+// What a value's name says: words of small letters can be typed, FILE, DIR and .ending are files
+// and folders, other capitals stand for something. Braces hold words of any letters.
 [[nodiscard]] Value parse_value(const std::string& name);
 
 }  // namespace psf::manual

@@ -9,6 +9,7 @@
 
 #include "core/text.h"
 #include "filter/parameters/text.h"
+#include "filter/parameters/values.h"
 #include "noise_report.h"
 #include "run/filter_dump.h"
 #include "study/study_file.h"

@@ -59,7 +59,7 @@ void print(const study::TuneResult& tuning, const run::Dump& dump) {
   for (std::size_t k = 0; k < std::min(kRowsShown, rows.size()); ++k) {
     const study::TuneRow& row = *rows[k];
     fmt::print("{:>10.4g} {:>9.2g} {:>10.4g} {:>10.4g} {:>10.1f} {:>10.1f}  {}\n", row.error,
-               row.standard_error, row.bias_sq, row.variance, row.neighbors, row.distance,
+               row.standard_error, row.bias_sq, row.variance, row.neighbors, row.sigmas_above_least,
                as_options(row.parameters));
   }
   const study::TuneRow& best = tuning.rows[tuning.best];

@@ -230,8 +230,8 @@ class Terms {
     const V reach = hn::Load(kD, packet_.plane_reach + lane_);
     return {n, distance(0), column(n), column(n + 1), column(n + 2), reach};
   }
-  // Calls visit(k, term, c) for each term of `bits`, k its value; c is the column at which the source begins
-  // that `pass` takes.
+  // Calls visit(k, term, c) for each term of `bits`, k its value; c is the column at which the
+  // source begins that `pass` takes.
   template <class Visit>
   HWY_INLINE void each(std::uint32_t bits, const Visit& visit) const {
     const auto wants = [bits](Term term) { return (bits & bit(term)) != 0; };

@@ -5,7 +5,7 @@
 
 namespace psf::filter {
 
-std::vector<float> areas(const Records& records, const Roles& roles, const Block& block) {
+std::vector<float> disk_areas(const Records& records, const Roles& roles, const Block& block) {
   if (block.cameras.size() > 1) {
     throw Error(ErrorCode::usage,
                 "`estimator disk` counts a surface once for every camera that sees it: "
@@ -21,7 +21,7 @@ std::vector<float> areas(const Records& records, const Roles& roles, const Block
 }
 
 Estimates disk(const MethodInput& input) {
-  return apply_engine(input, {.areas = areas, .engine = ball_engine});
+  return apply_engine(input, {.areas = disk_areas, .engine = ball_engine});
 }
 
 }  // namespace psf::filter

@@ -9,8 +9,8 @@ namespace psf::filter {
 
 // By record number: A_j of the sources, 0 for other records. Throws Error{usage} where the block
 // has several cameras.
-[[nodiscard]] std::vector<float> areas(const Records& records, const Roles& roles,
-                                       const Block& block);
+[[nodiscard]] std::vector<float> disk_areas(const Records& records, const Roles& roles,
+                                            const Block& block);
 
 [[nodiscard]] Estimates disk(const MethodInput& input);
 

@@ -27,7 +27,8 @@ using Method = Estimates (*)(const MethodInput&);
 struct EngineSteps {
   // A_j of the sources; null: [average].
   std::vector<float> (*areas)(const Records&, const Roles&, const Block&) = nullptr;
-  // Radii of its own, from a problem with those given; null: those given. `values`: what is averaged.
+  // Radii of its own, from a problem with those given; null: those given. `values`: what is
+  // averaged.
   std::vector<float> (*radii)(const Problem&, std::span<const Rgb> values,
                               const Parameters&) = nullptr;
   std::unique_ptr<Engine> (*engine)(const Problem&, const Block&, const Parameters&);

@@ -79,7 +79,8 @@ struct ChannelNeed {
 // The channels that `parameters` need in addition to `position`, `throughput`, `contribution`,
 // `distance` and `pixel`, which every dump has.
 [[nodiscard]] std::vector<ChannelNeed> optional_channels(const Parameters& parameters);
-// Whether d_i, and whether the cameras' angle per pixel, is used: by the radius or by the estimator.
+// Whether d_i, and whether the cameras' angle per pixel, is used: by the radius or by the
+// estimator.
 [[nodiscard]] bool needs_distance(const Parameters& parameters);
 [[nodiscard]] bool needs_angle(const Parameters& parameters);
 

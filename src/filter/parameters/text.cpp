@@ -3,120 +3,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <iterator>
 #include <string_view>
 #include <utility>
 
 #include "core/error.h"
+#include "filter/parameters/values.h"
 
 namespace psf::filter {
 namespace {
-
-// The whole of `text` as a number. Unlike those of core::parse_number() it may be infinite, as a
-// threshold may.
-template <typename T>
-std::optional<T> number(std::string_view text) {
-  T value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || text.empty()) return std::nullopt;
-  return value;
-}
-
-bool strip_suffix(std::string_view& text, std::string_view suffix) {
-  if (!text.ends_with(suffix)) return false;
-  text.remove_suffix(suffix.size());
-  return true;
-}
-
-std::string to_text(const std::optional<float>& threshold) {
-  return threshold ? fmt::format("{}", *threshold) : "off";
-}
-std::string to_text(bool on) {
-  return on ? "on" : "off";
-}
-
-// `text` is not what the parameter may be.
-[[noreturn]] void refuse(std::string_view name, std::string_view text, std::string_view why) {
-  throw Error(ErrorCode::usage, fmt::format("`{}`: '{}' {}", name, text, why));
-}
-
-// The place of `text` among the names of an enumeration, as the value that has it.
-template <class Enum, class Names>
-Enum parse_name(const char* name, const std::string& text, const Names& names) {
-  const auto found = std::find(names.begin(), names.end(), text);
-  if (found == names.end())
-    refuse(name, text, fmt::format("is none: write {}", fmt::join(names, ", ")));
-  return static_cast<Enum>(found - names.begin());
-}
-
-template <class T>
-T parse_number(const char* name, const std::string& text) {
-  const bool has_plus = text.starts_with('+') && !text.starts_with("+-");
-  const std::optional<T> value = number<T>(std::string_view(text).substr(has_plus ? 1 : 0));
-  if (!value || std::isnan(static_cast<double>(*value))) refuse(name, text, "is no number");
-  return *value;
-}
-
-bool parse_switch(const char* name, const std::string& text) {
-  if (text != "on" && text != "off") refuse(name, text, "is neither on nor off");
-  return text == "on";
-}
-
-void parse_radius(const std::string& text, Radius& radius) {
-  std::string_view rest = text;
-  RadiusBasis basis = RadiusBasis::distance;
-  if (strip_suffix(rest, "px")) {
-    basis = RadiusBasis::footprint;
-  } else if (strip_suffix(rest, "wu")) {
-    basis = RadiusBasis::world;
-  }
-  const std::optional<double> r0 = number<double>(rest);
-  if (!r0 || !(*r0 >= 0)) {
-    refuse("r0", text, "is no radius: write 0.02 (of the distance), 8px or 0.5wu (world units)");
-  }
-  radius.r0 = *r0;
-  radius.basis = basis;
-}
-
-BlockSize parse_block(const std::string& text) {
-  BlockSize block;
-  std::string_view rest = text;
-  const std::size_t caret = text.find('^');
-  if (text == "all") {
-    block.kind = BlockSize::Kind::all;
-    return block;
-  }
-  if (caret != std::string::npos) {
-    const auto base = number<std::uint32_t>(rest.substr(0, caret));
-    const auto exponent = number<std::uint32_t>(rest.substr(caret + 1));
-    if (base && exponent && *base >= 2 && *exponent < 64) {
-      block.kind = BlockSize::Kind::power;
-      block.base = *base;
-      block.exponent = *exponent;
-      return block;
-    }
-  } else if (strip_suffix(rest, "passes") || strip_suffix(rest, "pass")) {
-    const auto passes = number<std::uint64_t>(rest);
-    if (passes && *passes >= 1) {
-      block.kind = BlockSize::Kind::passes;
-      block.passes = *passes;
-      return block;
-    }
-  }
-  refuse("block", text, "is no block: write 2^16 (paths; base >= 2), 1pass, 16passes or all");
-}
-
-std::uint32_t parse_sources(const std::string& text) {
-  const std::string_view rest = text;
-  const auto k = rest.starts_with("1/") ? number<std::uint32_t>(rest.substr(2))
-                                        : std::optional<std::uint32_t>(text == "1" ? 1 : 0);
-  if (k && *k >= 1) return *k;
-  refuse("sources", text, "is no share: write 1/4 or 1");
-}
 
 // A term of the table with a threshold or a switch.
 template <Term kTerm>
@@ -131,14 +26,10 @@ std::string term_text(const Parameters& p) {
 template <Term kTerm>
 void set_term(Parameters& p, const std::string& text) {
   constexpr TermInfo kInfo = info(kTerm);
-  if constexpr (kInfo.threshold == nullptr) {
-    p.weights.*kInfo.is_on = parse_switch(kInfo.name, text);
-  } else if (text == "off") {
-    (p.weights.*kInfo.threshold).reset();
+  if constexpr (kInfo.threshold != nullptr) {
+    p.weights.*kInfo.threshold = parse_threshold(kInfo.name, text);
   } else {
-    const std::optional<float> value = number<float>(text);
-    if (!value || !(*value == *value)) refuse(kInfo.name, text, "is neither a number nor off");
-    p.weights.*kInfo.threshold = value;
+    p.weights.*kInfo.is_on = parse_switch(kInfo.name, text);
   }
 }
 template <Term kTerm>
@@ -173,12 +64,12 @@ Parameter estimator_row() {
           {},
           [](const Parameters& p) { return std::string(info(p.estimator).name); },
           [](Parameters& p, const std::string& text) {
-            p.estimator = parse_name<Estimator>("estimator", text, estimator_names());
+            p.estimator = static_cast<Estimator>(parse_name("estimator", text, estimator_names()));
           }};
 }
 
-constexpr std::array<const char*, 2> kCountNames = {"samples", "blocks"};         // of RadiusCount
-constexpr std::array<const char*, 3> kEngineNames = {"flann", "plain", "brute"};  // of EngineKind
+constexpr std::string_view kCountNames[] = {"samples", "blocks"};         // of RadiusCount
+constexpr std::string_view kEngineNames[] = {"flann", "plain", "brute"};  // of EngineKind
 
 const Parameter kBeforeTerms[] = {
     {"r0",
@@ -194,9 +85,7 @@ const Parameter kBeforeTerms[] = {
      "0,0.33 or 0.1:0.9:0.1",
      {},
      [](const Parameters& p) { return fmt::format("{}", p.radius.delta); },
-     [](Parameters& p, const std::string& text) {
-       p.radius.delta = parse_number<double>("delta", text);
-     }},
+     [](Parameters& p, const std::string& text) { p.radius.delta = parse_real("delta", text); }},
     {"radius-count",
      "samples|blocks",
      "what n counts",
@@ -206,7 +95,7 @@ const Parameter kBeforeTerms[] = {
        return std::string(kCountNames[static_cast<std::size_t>(p.radius.count)]);
      },
      [](Parameters& p, const std::string& text) {
-       p.radius.count = parse_name<RadiusCount>("radius-count", text, kCountNames);
+       p.radius.count = static_cast<RadiusCount>(parse_name("radius-count", text, kCountNames));
      }},
     {"block",
      "B",
@@ -234,7 +123,7 @@ const Parameter kAfterTerms[] = {
      {},
      [](const Parameters& p) { return fmt::format("{}", p.iterations); },
      [](Parameters& p, const std::string& text) {
-       p.iterations = parse_number<std::uint32_t>("iterations", text);
+       p.iterations = parse_count("iterations", text);
      }},
     {"sources",
      "1/K",
@@ -255,7 +144,7 @@ const Parameter kAfterTerms[] = {
        return info(p.estimator).least_share < 1 ? fmt::format("{}", p.agree) : std::string("off");
      },
      [](Parameters& p, const std::string& text) {
-       if (text != "off") p.agree = parse_number<double>("agree", text);
+       if (text != "off") p.agree = parse_real("agree", text);
      }},
     {"search",
      "flann|plain|brute",
@@ -266,7 +155,7 @@ const Parameter kAfterTerms[] = {
        return std::string(kEngineNames[static_cast<std::size_t>(p.engine)]);
      },
      [](Parameters& p, const std::string& text) {
-       p.engine = parse_name<EngineKind>("search", text, kEngineNames);
+       p.engine = static_cast<EngineKind>(parse_name("search", text, kEngineNames));
      }},
 };
 
@@ -285,23 +174,6 @@ std::vector<Parameter> make_table() {
 }
 
 }  // namespace
-
-std::string to_text(const Radius& radius) {
-  constexpr std::array<const char*, 3> kUnits = {"", "px", "wu"};  // of RadiusBasis
-  return fmt::format("{}{}", radius.r0, kUnits[static_cast<std::size_t>(radius.basis)]);
-}
-
-std::string to_text(const BlockSize& block) {
-  switch (block.kind) {
-    case BlockSize::Kind::power:
-      return fmt::format("{}^{}", block.base, block.exponent);
-    case BlockSize::Kind::passes:
-      return fmt::format("{}{}", block.passes, block.passes == 1 ? "pass" : "passes");
-    case BlockSize::Kind::all:
-      break;
-  }
-  return "all";
-}
 
 std::span<const Parameter> parameter_table() {
   static const std::vector<Parameter> table = make_table();

@@ -22,8 +22,8 @@ struct Parameter {
   const char* examples;  // values of it, for lists: "4px,8px"
   std::optional<Term> term;
   std::string (*text)(const Parameters&);
-  // Throws Error{usage} that names the parameter and says what may be written. Whether the values of
-  // all parameters go together is for Parameters::validate().
+  // Throws Error{usage} that names the parameter and says what may be written. Whether the values
+  // of all parameters go together is for Parameters::validate().
   void (*set)(Parameters&, const std::string& text);
 
   [[nodiscard]] bool is_switch() const { return std::string_view(type) == "on|off"; }
@@ -51,9 +51,5 @@ struct ParameterTexts {
 [[nodiscard]] Parameters parameters_of(const ParameterTexts& texts);
 // The terms that are among the names.
 [[nodiscard]] TermSet asked_terms(const std::map<std::string, std::string>& given);
-
-// Text as of the parameters `r0` and `block`: 8px, 0.02, 0.5wu; 2^16, 16passes, 1pass, all.
-[[nodiscard]] std::string to_text(const Radius& radius);
-[[nodiscard]] std::string to_text(const BlockSize& block);
 
 }  // namespace psf::filter

@@ -55,8 +55,8 @@ struct PathRecord {
   Rgb unfiltered{0, 0, 0};    // u_i
   float distance = 0;         // d_i, length of the camera segment
   std::uint32_t visibility = 0;  // bit l mod 32 set: light l was seen from x_i
-  // Length of the first ray scattered from x_i; infinity for a miss or absorption; NaN where the path
-  // is not shaded.
+  // Length of the first ray scattered from x_i; infinity for a miss or absorption; NaN where the
+  // path is not shaded.
   float hit_distance = 0;
   Vec3 direction{0, 0, 0};     // omega_i, unit, from x_i to the previous vertex or the camera
   std::uint32_t material = 0;  // index in Scene::materials

@@ -102,6 +102,34 @@ Error unreadable(const std::string& name, const std::string& why) {
   return {ErrorCode::bad_input, name + ": cannot read the picture: " + why};
 }
 
+void refuse_size(const std::string& name, const OIIO::ImageSpec& spec, const TexelMap& map) {
+  const auto channels = static_cast<std::size_t>(spec.nchannels);
+  for (const auto& [width, height] :
+       {std::pair(map.width(), map.height()),
+        std::pair(static_cast<std::size_t>(spec.width), static_cast<std::size_t>(spec.height))}) {
+    if (width > kMaxTexels / height || width * height > 4 * kMaxTexels / channels) {
+      throw Error(ErrorCode::limit,
+                  fmt::format("{}: {} x {} texels of {} channels are more than psf takes (2^28)",
+                              name, width, height, channels));
+    }
+  }
+}
+
+// The stored values of every channel, (height, width, channels); closes the file.
+template <class T>
+std::vector<T> read_values(const std::string& name, OIIO::ImageInput& input,
+                           const OIIO::ImageSpec& spec, std::vector<std::string>& notes) {
+  std::vector<T> values(static_cast<std::size_t>(spec.width) *
+                        static_cast<std::size_t>(spec.height) *
+                        static_cast<std::size_t>(spec.nchannels));
+  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::BaseTypeFromC<T>::value, values.data()))
+    throw unreadable(name, first_line(input.geterror()));
+  if (input.seek_subimage(1, 0)) notes.push_back(name + ": has several parts, the first is taken");
+  (void)input.geterror();
+  input.close();
+  return values;
+}
+
 // Values of a kind in the range that their use allows; counts those that were not.
 class ValueRange {
  public:
@@ -171,31 +199,12 @@ Texture Texture::read(const std::string& name, std::span<const unsigned char> by
   const ColourChannels c = colour_channels(name, spec, use, notes);
   const auto curve = transfer_curve(name, spec, use, plain);
   const auto channels = static_cast<std::size_t>(spec.nchannels);
-  for (const auto& [width, height] :
-       {std::pair(map.width(), map.height()),
-        std::pair(static_cast<std::size_t>(spec.width), static_cast<std::size_t>(spec.height))}) {
-    if (width > kMaxTexels / height || width * height > 4 * kMaxTexels / channels) {
-      throw Error(ErrorCode::limit,
-                  fmt::format("{}: {} x {} texels of {} channels are more than psf takes (2^28)",
-                              name, width, height, channels));
-    }
-  }
-  const auto read_into = [&](OIIO::TypeDesc type, auto& values) {
-    values.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
-                  channels);
-    if (!input.read_image(0, 0, 0, spec.nchannels, type, values.data()))
-      throw unreadable(name, first_line(input.geterror()));
-    if (input.seek_subimage(1, 0))
-      notes.push_back(name + ": has several parts, the first is taken");
-    (void)input.geterror();
-    input.close();
-  };
+  refuse_size(name, spec, map);
 
   Texture texture(map.width(), map.height());
   const std::size_t count = texture.width_ * texture.height_;
   if (spec.format == OIIO::TypeDesc::UINT8 && !c.alpha) {
-    std::vector<std::uint8_t> values;
-    read_into(OIIO::TypeDesc::UINT8, values);
+    const auto values = read_values<std::uint8_t>(name, input, spec, notes);
     Table table{};
     for (std::size_t i = 0; i < table.size(); ++i) table[i] = curve(static_cast<float>(i) / 255.0f);
     texture.table_ = std::make_shared<const Table>(table);
@@ -209,8 +218,7 @@ Texture Texture::read(const std::string& name, std::span<const unsigned char> by
     }
     return texture;
   }
-  std::vector<float> values;
-  read_into(OIIO::TypeDesc::FLOAT, values);
+  const auto values = read_values<float>(name, input, spec, notes);
   const auto matrix =
       plain || use == TextureUse::numbers ? std::optional<Imath::M33f>() : to_rec709(spec);
   ValueRange range(name, use, texture.width_);
