@@ -20,12 +20,30 @@ namespace py = pybind11;
 
 // Calls of this module that are at work.
 inline std::atomic<int> at_work{0};
+// The interpreter ends, and no call may begin: a thread that waits for it then is ended in the midst
+// of one. Read and written with the interpreter lock.
+inline bool ending = false;
+
+// Counts a call from here to the end of the scope.
+struct AtWork {
+  AtWork() { ++at_work; }
+  ~AtWork() { --at_work; }
+  AtWork(const AtWork&) = delete;
+  AtWork& operator=(const AtWork&) = delete;
+};
+
+// Ends the thread that makes a call, without a word.
+[[noreturn]] inline void end_thread() {
+  PyErr_SetNone(PyExc_SystemExit);
+  throw py::error_already_set();
+}
 
 // Does work(on_progress) on a thread of its own: meanwhile this one looks for ^C and hands on
 // progress. What Python raises ends this call and no other. `Scope`: Interruptible of the library
 // or of core.
 template <class Scope, class Work>
 auto interruptible(const py::object& progress, const Work& work) {
+  if (ending) end_thread();
   std::atomic<std::uint64_t> done{0}, total{0};
   std::atomic<bool> stopped{false}, finished{false};
   const auto on_progress = [&](std::uint64_t now, std::uint64_t all) {
@@ -43,7 +61,7 @@ auto interruptible(const py::object& progress, const Work& work) {
     }
     finished = true;
   });
-  ++at_work;
+  const AtWork counted;  // not before: the thread may not have started
   while (!finished) {
     {
       const py::gil_scoped_release released;
@@ -59,17 +77,18 @@ auto interruptible(const py::object& progress, const Work& work) {
     }
   }
   worker.join();
-  --at_work;
+  if (ending) end_thread();
   if (raised) std::rethrow_exception(raised);
   if (failed) std::rethrow_exception(failed);
   if (!progress.is_none() && total > 0) progress(done.load(), total.load());
   return std::move(*result);
 }
 
-// Threads that Python does not wait for end before the interpreter does: interrupt() ends all
-// calls.
+// Threads that Python does not wait for end their calls before the interpreter ends: interrupt()
+// ends all calls.
 inline void end_at_exit(void (*interrupt)() noexcept) {
   py::module_::import("atexit").attr("register")(py::cpp_function([interrupt] {
+    ending = true;
     const py::gil_scoped_release released;
     while (at_work > 0) {
       interrupt();

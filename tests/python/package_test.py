@@ -269,12 +269,25 @@ class Package(unittest.TestCase):
         self.assertFalse(dump.refresh())
 
     def test_a_thread_that_nobody_waits_for_ends_with_the_program(self) -> None:
-        program = ("import sys, threading, time; sys.path.insert(0, sys.argv[1]); import psf; "
-                   "work = lambda: [psf.open(sys.argv[2]).filter(r0='64px') for _ in range(999)]; "
-                   "threading.Thread(target=work, daemon=True).start(); time.sleep(0.2)")
-        ended = subprocess.run([sys.executable, "-B", "-c", program, PACKAGE, self.path],
-                               capture_output=True, text=True)
-        self.assertEqual((ended.returncode, ended.stdout), (0, ""))
+        program = """
+import sys, threading, time
+sys.path.insert(0, sys.argv[1])
+import psf
+dump = psf.open(sys.argv[2])
+
+def work():
+    while True:  # some long, some so short that the end comes between two
+        dump.filter(r0="64px")
+        dump.filter(r0="0", passes=1, progress=lambda done, total: None)
+
+for _ in range(4):
+    threading.Thread(target=work, daemon=True).start()
+time.sleep(float(sys.argv[3]))
+"""
+        for seconds in ("0", "0.05", "0.1", "0.2"):
+            ended = subprocess.run([sys.executable, "-B", "-c", program, PACKAGE, self.path, seconds],
+                                   capture_output=True, text=True)
+            self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, "", ""))
 
     def test_progress_is_said_and_what_it_raises_ends_the_work(self) -> None:
         dump = psf.open(self.path)
