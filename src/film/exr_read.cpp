@@ -9,6 +9,7 @@
 
 #include <exception>
 #include <new>
+#include <string>
 
 #include "core/error.h"
 #include "film/exr_check.h"
@@ -54,8 +55,10 @@ Image read_exr(const std::string& path) {
     input.setFrameBuffer(buffer);
     input.readPixels(window.min.y, window.max.y);
     for (auto at = input.header().begin(); at != input.header().end(); ++at) {
+      const std::string name = at.name();
+      if (name == "type" || name == "name") continue;  // of the part, and not for us to write
       if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&at.attribute())) {
-        image.attributes.emplace_back(at.name(), text->value());
+        image.attributes.emplace_back(name, text->value());
       }
     }
     return image;

@@ -19,6 +19,8 @@ struct Estimates {
   std::vector<Rgb> c_bar;                // 0 for the other records
   std::vector<std::uint32_t> neighbors;  // number of sources averaged; 0 for an orphan
   Statistics statistics;
+  // By layer of the records: c_bar of its contributions; empty where it has none.
+  std::vector<std::vector<Rgb>> layers = {};
   std::vector<float> radius = {};  // the radii that the estimator chose; empty: those given
 };
 

@@ -30,11 +30,11 @@ WeightTerms terms_in_use(const Records& records, const WeightTerms& terms) {
   return in_use;
 }
 
-// c / rho of the sources.
-std::vector<Rgb> demodulated(const Records& records, const Roles& roles) {
+std::vector<Rgb> demodulated(std::span<const Rgb> contribution, const Records& records,
+                             const Roles& roles) {
   std::vector<Rgb> values(records.size(), Rgb(0, 0, 0));
   for (const std::uint32_t j : roles.sources) {
-    values[j] = demodulate(records.contribution[j], records.reflectance[j]);
+    values[j] = demodulate(contribution[j], records.reflectance[j]);
   }
   return values;
 }

@@ -18,18 +18,19 @@ void require_channels(const Records& records, const Parameters& parameters);
 // `terms`, without `gloss` where no vertex has a glossy lobe, since then `gloss` passes every pair.
 [[nodiscard]] WeightTerms terms_in_use(const Records& records, const WeightTerms& terms);
 
-// By record number: c / rho of the sources, 0 for other records.
-[[nodiscard]] std::vector<Rgb> demodulated(const Records& records, const Roles& roles);
+// By record number: contribution / rho of the sources, 0 for other records. `contribution`: c, or
+// that of a layer.
+[[nodiscard]] std::vector<Rgb> demodulated(std::span<const Rgb> contribution,
+                                           const Records& records, const Roles& roles);
 
 // c_bar_i from the average over `neighbors` sources: multiplied by rho_i under demodulation. A
-// source that was averaged over itself alone keeps c_i, which dividing and multiplying would round.
+// source that was averaged over itself alone keeps `own`, c_i, which dividing and multiplying would
+// round.
 [[nodiscard]] inline Rgb finished(const Rgb& averaged, std::uint32_t neighbors, bool is_source,
-                                  float r_i, const Records& records, std::uint32_t i,
-                                  const Parameters& parameters) {
+                                  float r_i, const Rgb& own, const Records& records,
+                                  std::uint32_t i, const Parameters& parameters) {
   const bool is_mean = !info(parameters.estimator).is_over_area || r_i * r_i == 0;
-  if (neighbors == 1 && is_source && is_mean) {
-    return records.contribution[i];
-  }
+  if (neighbors == 1 && is_source && is_mean) return own;
   return parameters.demodulate ? remodulate(averaged, records.reflectance[i]) : averaged;
 }
 

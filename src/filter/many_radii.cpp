@@ -90,7 +90,7 @@ class Many {
     engine::RingEngine engine(problem, scales.values, basis);
     if (!engine.is_moderate()) return false;
     std::vector<Rgb> divided;
-    if (parameters_.demodulate) divided = demodulated(r_, roles);
+    if (parameters_.demodulate) divided = demodulated(r_.contribution, r_, roles);
     engine.set_values(parameters_.demodulate ? std::span<const Rgb>(divided) : r_.contribution);
     counts.seconds_index = seconds_since(start);
 
@@ -143,7 +143,7 @@ class Many {
     for (std::size_t k = 0; k < c_bar.size(); ++k) {
       const std::size_t from = scales.of[k];
       c_bar[k] = finished(results.average[from], results.neighbors[from], source,
-                          engine.radius(i, from), r_, i, parameters_);
+                          engine.radius(i, from), r_.contribution[i], r_, i, parameters_);
     }
   }
 

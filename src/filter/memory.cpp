@@ -11,6 +11,7 @@ namespace psf::filter {
 namespace {
 
 constexpr std::uint64_t kVector = 12, kWord = 4, kSum = 24;  // 3 floats, 1 float, 3 doubles
+constexpr std::uint64_t kGroup = 16, kQuad = 4;              // records of nodes in engine/tree.h
 
 // Bytes per record of what the terms compare, each channel once.
 std::uint64_t compared(const Parameters& parameters) {
@@ -29,7 +30,6 @@ std::uint64_t compared(const Parameters& parameters) {
 }  // namespace
 
 std::uint64_t memory_per_record(const Parameters& parameters) {
-  constexpr std::uint64_t kGroup = 16, kQuad = 4;         // records of nodes in engine/tree.h
   constexpr std::uint64_t kResult = kVector + kWord + 1;  // c_bar, neighbours, role
   constexpr std::uint64_t kLists = 4 * kWord;  // queries and sources, ascending and in order
   constexpr std::uint64_t kRadius = kWord;
@@ -43,6 +43,14 @@ std::uint64_t memory_per_record(const Parameters& parameters) {
   const std::uint64_t columns = kVector + compared(parameters);  // with positions
   const std::uint64_t groups = (2 * columns + kSum + kGroup - 1) / kGroup;
   return bytes + columns + kSum + kQuads + groups + kParents;
+}
+
+std::uint64_t memory_per_layer(const Parameters& parameters) {
+  // The average, and what is averaged in place of the contribution.
+  constexpr std::uint64_t kValues = 2 * kVector;
+  // Of engine/tree_sums.h: a source's, and its shares of its quad's, its group's and its parent's.
+  constexpr std::uint64_t kSums = kSum + kSum / kQuad + (kSum + kGroup - 1) / kGroup + 1;
+  return kValues + (info(parameters.estimator).has_tree ? kSums : kVector);
 }
 
 }  // namespace psf::filter

@@ -29,12 +29,16 @@ Adopted adopt(const search::Search& search, const Problem& problem, std::uint32_
   return adopted;
 }
 
-Rgb average_of(const Adopted& adopted, std::span<const Rgb> values, Statistics& statistics) {
-  ++statistics.orphans;
-  if (!adopted.matched) ++statistics.orphans_unmatched;
+Rgb mean_of(const Adopted& adopted, std::span<const Rgb> values) {
   Sum sum;
   for (const std::uint32_t j : adopted.sources) sum.add(values[j], 1);
   return sum.over(static_cast<double>(adopted.sources.size()));
+}
+
+void average_adopted(const Adopted& adopted, std::uint32_t i, std::span<const Averaged> all,
+                     Statistics& statistics) {
+  statistics.add_orphan(adopted.matched);
+  for (const auto& [values, out] : all) out[i] = mean_of(adopted, values);
 }
 
 }  // namespace psf::filter

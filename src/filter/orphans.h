@@ -24,9 +24,10 @@ struct Adopted {
 // Finds the sources for the orphan i. `search` holds the positions of the problem's sources.
 [[nodiscard]] Adopted adopt(const search::Search& search, const Problem& problem, std::uint32_t i);
 
-// The mean of `values` over the adopted sources, without the areas of [disk]. Adds to the counts of
-// orphans.
-[[nodiscard]] Rgb average_of(const Adopted& adopted, std::span<const Rgb> values,
-                             Statistics& statistics);
+// The mean of `values` over the adopted sources, without the areas of [disk].
+[[nodiscard]] Rgb mean_of(const Adopted& adopted, std::span<const Rgb> values);
+// Writes the means for the orphan i of everything that is averaged, and counts the orphan.
+void average_adopted(const Adopted& adopted, std::uint32_t i, std::span<const Averaged> all,
+                     Statistics& statistics);
 
 }  // namespace psf::filter

@@ -16,34 +16,37 @@ constexpr std::size_t kPlainGrain = 256;  // queries a range
 // Works on queries one after the other; one a range, so nothing is shared.
 class Worker {
  public:
-  Worker(const Problem& problem, const search::Search& search, std::span<const Rgb> values,
+  Worker(const Problem& problem, const search::Search& search, std::span<const Averaged> all,
          bool count_refusals)
-      : p_(problem), search_(search), values_(values), count_refusals_(count_refusals) {}
+      : p_(problem), search_(search), all_(all), count_refusals_(count_refusals) {}
 
   // Returns how many neighbours there were.
-  std::uint32_t average(std::uint32_t i, Rgb& out) {
+  std::uint32_t average(std::uint32_t i) {
     const float r_i = p_.radius[i], r_sq = r_i * r_i;
-    const bool own = p_.roles.of[i] == Role::source;
-    const bool disk = !p_.area.empty();
-    Sum sum;
-    std::uint32_t count = 0;
-    if (own) {
-      sum.add(values_[i], disk ? double{p_.area[i]} : 1);
-      ++count;
+    averaged_.clear();
+    if (p_.roles.of[i] == Role::source) {
+      averaged_.push_back(i);
+      if (count_refusals_) ++counts.candidates;
     }
     if (r_sq > 0) {
       search_.within(p_.records.position[i], r_sq, found_);
       for (const search::Neighbor& neighbor : found_) {
         const std::uint32_t j = p_.roles.sources[neighbor.index];
-        if (j == i || !passes(i, j, r_i)) continue;
-        sum.add(values_[j], disk ? double{p_.area[j]} : 1);
-        ++count;
+        if (j != i && passes(i, j, r_i)) averaged_.push_back(j);
       }
     }
-    if (count_refusals_ && own) ++counts.candidates;
+    const auto count = static_cast<std::uint32_t>(averaged_.size());
     counts.add_query(count);
-    out = count > 0 ? quotient(sum, count, disk, r_i, values_[i])
-                    : average_of(adopt(search_, p_, i), values_, counts);
+    if (count == 0) {
+      average_adopted(adopt(search_, p_, i), i, all_, counts);
+      return 0;
+    }
+    const bool disk = !p_.area.empty();
+    for (const auto& [values, out] : all_) {
+      Sum sum;
+      for (const std::uint32_t j : averaged_) sum.add(values[j], disk ? double{p_.area[j]} : 1);
+      out[i] = quotient(sum, count, disk, r_i, values[i]);
+    }
     return count;
   }
 
@@ -60,9 +63,10 @@ class Worker {
 
   const Problem& p_;
   const search::Search& search_;
-  std::span<const Rgb> values_;
+  std::span<const Averaged> all_;
   bool count_refusals_;
   std::vector<search::Neighbor> found_;
+  std::vector<std::uint32_t> averaged_;  // record numbers
 };
 
 class PlainEngine final : public Engine {
@@ -76,14 +80,14 @@ class PlainEngine final : public Engine {
     search_ = search::make_search(search_of(kind), positions);
   }
 
-  void apply(std::span<const Rgb> values, bool count_refusals, std::span<Rgb> out,
-             std::span<std::uint32_t> neighbors, Statistics& statistics) override {
+  void apply(std::span<const Averaged> all, bool count_refusals, std::span<std::uint32_t> neighbors,
+             Statistics& statistics) override {
     std::vector<Statistics> parts(core::range_count(order_.size(), kPlainGrain));
     core::parallel_for(order_.size(), kPlainGrain, [&](std::size_t begin, std::size_t end) {
       core::throw_if_interrupted("no picture was written");
-      Worker worker(p_, *search_, values, count_refusals);
+      Worker worker(p_, *search_, all, count_refusals);
       for (const std::uint32_t i : std::span(order_).subspan(begin, end - begin)) {
-        neighbors[i] = worker.average(i, out[i]);
+        neighbors[i] = worker.average(i);
       }
       parts[begin / kPlainGrain] = worker.counts;
     });

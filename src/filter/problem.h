@@ -23,17 +23,24 @@ struct Problem {
   std::span<const float> area;  // A_j of [disk]; empty: [average]
 };
 
+// What is averaged, and where the averages go, both by record number.
+struct Averaged {
+  std::span<const Rgb> values;
+  std::span<Rgb> out;
+};
+
 // Applies [average] or [disk], and keeps its search structure from one application to the next.
 // There are two engines for balls: that of plain.h defines the result, that of engine/ is fast.
 class Engine {
  public:
   virtual ~Engine() = default;
 
-  // One application of [average] or [disk]. For every query i it writes the average of `values` of
-  // the sources to out[i], and the number of sources to neighbors[i], 0 for an orphan. Adds its
-  // counts to `statistics`. The result is the same for any number of threads. Throws
-  // Error{interrupted} on ^C.
-  virtual void apply(std::span<const Rgb> values, bool count_refusals, std::span<Rgb> out,
+  // One application of [average] or [disk] to everything in `all`, at least one, which shares the
+  // search: weights do not ask for values. For every query i it writes the average of the values of
+  // the sources to out[i], the same bits whatever else is averaged, and the number of sources to
+  // neighbors[i], 0 for an orphan. Adds its counts to `statistics`. The result is the same for any
+  // number of threads. Throws Error{interrupted} on ^C.
+  virtual void apply(std::span<const Averaged> all, bool count_refusals,
                      std::span<std::uint32_t> neighbors, Statistics& statistics) = 0;
 };
 

@@ -13,6 +13,13 @@ namespace psf::filter {
 constexpr std::uint8_t kHasVertex = 1;
 constexpr std::uint8_t kShaded = 2;
 
+// A named part of the light of every path: parts of c_i and of u_i. All layers together add up to c_i
+// and u_i.
+struct Layer {
+  std::span<const Rgb> contribution;  // c_i^l; empty: 0
+  std::span<const Rgb> unfiltered;    // u_i^l; empty: 0
+};
+
 // Views of equal length; a channel that nothing needs may be empty. The symbols are those of
 // README.md.
 struct Records {
@@ -30,7 +37,8 @@ struct Records {
   std::span<const float> hit_distance;        // h_i, of the first ray from x_i; infinity: a miss
   std::span<const Vec3> direction;            // omega_i, unit, toward the camera
   std::span<const std::uint32_t> material;
-  std::span<const float> roughness;  // q_i, perceptual, of the smoothest lobe; 1: diffuse
+  std::span<const float> roughness;    // q_i, perceptual, of the smoothest lobe; 1: diffuse
+  std::span<const Layer> layers = {};  // averaged beside c_i, with the same weights
 
   [[nodiscard]] std::size_t size() const { return flags.size(); }
 };

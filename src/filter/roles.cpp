@@ -147,6 +147,9 @@ class Classifier {
       bad |= std::uint32_t{!good} << channel;
     };
     check(r_.unfiltered.empty() || all_finite(r_.unfiltered[i]), kUnfiltered);
+    for (const Layer& layer : r_.layers) {
+      check(layer.unfiltered.empty() || all_finite(layer.unfiltered[i]), kUnfiltered);
+    }
     if (shaded_alone_) {
       check(vertex ? (r_.flags[i] & kShaded) != 0 : would_be_shaded(i), kHitDistance);
     }
@@ -155,6 +158,10 @@ class Classifier {
     check(all_finite(r_.position[i]), kPosition);
     check(!distance_ || std::isfinite(r_.distance[i]), kDistance);
     check(!source || all_finite(r_.contribution[i]), kContribution);
+    for (const Layer& layer : r_.layers) {
+      check(!source || layer.contribution.empty() || all_finite(layer.contribution[i]),
+            kContribution);
+    }
     check(!normal_ || all_finite(r_.normal[i]), kNormal);
     check(!reflectance_ || all_finite(r_.reflectance[i]), kReflectance);
     check(!hit_distance_ || r_.hit_distance[i] >= std::numeric_limits<float>::lowest(),
@@ -162,7 +169,12 @@ class Classifier {
     check(!direction_ || all_finite(r_.direction[i]), kDirection);
     check(!roughness_ || std::isfinite(r_.roughness[i]), kRoughness);
     if (demodulate_ && source && bad == 0) {
-      check(all_finite(demodulate(r_.contribution[i], r_.reflectance[i])), kReflectance);
+      const Rgb& rho = r_.reflectance[i];
+      check(all_finite(demodulate(r_.contribution[i], rho)), kReflectance);
+      for (const Layer& layer : r_.layers) {
+        check(layer.contribution.empty() || all_finite(demodulate(layer.contribution[i], rho)),
+              kReflectance);
+      }
     }
     return bad;
   }

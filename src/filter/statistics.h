@@ -49,6 +49,11 @@ struct Statistics {
     min_neighbors = std::min(min_neighbors, neighbors);
     max_neighbors = std::max(max_neighbors, neighbors);
   }
+  // Counts an orphan; `matched`: some source passes its weights.
+  void add_orphan(bool matched) {
+    ++orphans;
+    orphans_unmatched += matched ? 0 : 1;
+  }
   [[nodiscard]] double mean_neighbors() const {
     return queries == 0 ? 0 : static_cast<double>(accepted) / static_cast<double>(queries);
   }

@@ -65,7 +65,7 @@ FilterResult Dump::filter(const Parameters& parameters, const FilterOptions& opt
                                                    filter::asked_terms(parameters.given()));
   if (!note.empty()) result.notes.push_back(note);
   request.passes = to_run(options.passes);
-  if (!options.layers) request.layers = {false, false, false, false, false};
+  if (!options.layers) request.layers = run::PictureLayers::none();
   request.max_memory = options.max_memory;
   request.on_progress = options.on_progress;
   const run::FilterResult done = run::filter_dump(state_->dump, request);
@@ -73,7 +73,7 @@ FilterResult Dump::filter(const Parameters& parameters, const FilterOptions& opt
       run::attributes_of(PSF_VERSION, state_->dump, request.parameters);
   for (std::size_t k = 0; k < done.pictures.size(); ++k) {
     film::Image image = done.pictures[k].image();
-    image.attributes = attributes;
+    image.attributes.insert(image.attributes.begin(), attributes.begin(), attributes.end());
     film::add_picture(image.attributes, state_->cameras[k].name, request.passes.first,
                       request.passes.first + done.passes);
     result.pictures.push_back(to_picture(std::move(image), state_->cameras[k].name));

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "film/picture.h"
+#include "film/relight.h"
 #include "metrics/metrics.h"
 #include "metrics/reference.h"
 #include "psf/library.h"
@@ -70,6 +71,24 @@ std::vector<float> Picture::rgb(const std::string& prefix) const {
 
 std::vector<unsigned char> Picture::png(float exposure) const {
   return film::encode_png(to_image(*this), exposure);
+}
+
+std::vector<std::string> Picture::light_layers() const {
+  film::Image image;
+  image.attributes = attributes;
+  return film::light_layers_of(image);
+}
+
+Picture Picture::relight(const std::map<std::string, std::array<float, 3>>& weights) const {
+  film::LightWeights by_layer;
+  for (const auto& [layer, weight] : weights) {
+    by_layer[layer] = Rgb(weight[0], weight[1], weight[2]);
+  }
+  film::Image image = to_image(*this);
+  image.path = file.empty() ? "the picture" : file;
+  Picture result = to_picture(film::relight(image, by_layer), camera);
+  result.file = file;
+  return result;
 }
 
 void Picture::save(const std::string& path) const {

@@ -100,6 +100,9 @@ void bind_picture(py::module_& m) {
              const std::vector<unsigned char> file = picture.png(exposure);
              return py::bytes(reinterpret_cast<const char*>(file.data()), file.size());
            })
+      .def_property_readonly("light_layers", &Picture::light_layers)
+      .def("relight", &Picture::relight, py::arg("weights"),
+           py::call_guard<py::gil_scoped_release>())
       .def("save", &Picture::save, py::call_guard<py::gil_scoped_release>())
       .def_static("read", &Picture::read, py::arg("path"), py::arg("layer") = "",
                   py::call_guard<py::gil_scoped_release>())

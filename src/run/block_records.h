@@ -24,11 +24,18 @@ struct BlockRecords {
   std::vector<Vec3> direction;
   std::vector<std::uint32_t> material;
   std::vector<float> roughness;
+  // The columns of the layers, and the views of them that view() gives out.
+  struct LayerColumns {
+    std::vector<Rgb> contribution, unfiltered;
+  };
+  std::vector<LayerColumns> layers;
+  std::vector<filter::Layer> layer_views;
 
   [[nodiscard]] filter::Records view() const {
     filter::Records records;
     filter::for_each_channel(
         [&](const char*, const auto& member) { member(records) = member(*this); });
+    records.layers = layer_views;
     return records;
   }
 };

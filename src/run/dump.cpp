@@ -156,9 +156,7 @@ void Dump::read(const filter::PathRange& range, const ChannelSet& channels,
     if (column.capacity() < count) column = {};  // no old values beside the new ones
     column.resize(count);
   };
-  filter::for_each_channel([&](const char*, const auto& member) {
-    const std::optional<std::size_t> place = member(channels);
-    auto& column = member(out);
+  const auto add_task = [&](const std::optional<std::size_t>& place, auto& column) {
     if (!place) return column.clear();
     tasks.push_back([this, &range, &column, &make_room, count, place = *place] {
       make_room(column);
@@ -168,8 +166,19 @@ void Dump::read(const filter::PathRange& range, const ChannelSet& channels,
         reader_.read_floats(place, range.first, count, as_floats(column));
       }
     });
-  });
+  };
+  filter::for_each_channel(
+      [&](const char*, const auto& member) { add_task(member(channels), member(out)); });
+  out.layers.resize(channels.layers.size());
+  for (std::size_t k = 0; k < channels.layers.size(); ++k) {
+    add_task(channels.layers[k].contribution, out.layers[k].contribution);
+    add_task(channels.layers[k].unfiltered, out.layers[k].unfiltered);
+  }
   core::parallel_for(tasks.size(), 1, [&](std::size_t begin, std::size_t) { tasks[begin](); });
+  out.layer_views.clear();
+  for (const auto& [contribution, unfiltered] : out.layers) {
+    out.layer_views.push_back({contribution, unfiltered});
+  }
   if (!channels.flags) out.flags.assign(count, filter::kHasVertex | filter::kShaded);
   check_pixels(range, out);
 }

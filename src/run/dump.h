@@ -11,6 +11,7 @@
 #include "formats/layout/metadata.h"
 #include "formats/read/reader.h"
 #include "run/block_records.h"
+#include "run/light_layers.h"
 
 namespace psf::run {
 
@@ -20,6 +21,7 @@ namespace psf::run {
 struct ChannelSet {
   std::optional<std::size_t> flags, position, distance, throughput, contribution, unfiltered, pixel,
       camera, normal, reflectance, visibility, hit_distance, direction, material, roughness;
+  std::vector<LightLayer> layers;
 };
 
 class Dump {

@@ -27,8 +27,8 @@ class DumpFilter {
         run_(run),
         copies_(copies),
         first_(run.passes.first),
-        blocks_(dump, dump.select(run.parameters, run.layers.albedo || run.layers.normal),
-                run.parameters.block, run.parameters.radius.count, run.passes.first) {}
+        blocks_(dump, channels_of(dump, run), run.parameters.block, run.parameters.radius.count,
+                run.passes.first) {}
 
   // All passes up to `last`, not included.
   FilterResult run(std::size_t last) {
@@ -47,8 +47,16 @@ class DumpFilter {
   }
 
  private:
+  static ChannelSet channels_of(const Dump& dump, const FilterRequest& run) {
+    ChannelSet channels = dump.select(run.parameters, run.layers.albedo || run.layers.normal);
+    channels.layers = light_layers(dump.reader(), run.layers.light);
+    return channels;
+  }
+
   void make_pictures() {
     PictureLayers layers = run_.layers;
+    layers.light.emplace();
+    for (const LightLayer& layer : blocks_.channels().layers) layers.light->push_back(layer.name);
     layers.albedo = layers.albedo && blocks_.channels().reflectance.has_value();
     layers.normal = layers.normal && blocks_.channels().normal.has_value();
     for (const filter::CameraView& camera : dump_.cameras()) {
@@ -58,11 +66,15 @@ class DumpFilter {
   }
 
   void set_last(std::size_t last) {
-    const std::uint64_t sums =
-        CameraPictures::kBytesOfSums + (run_.with_noise ? NoiseMoments::kBytesAPixel : 0);
-    outcome_.memory = plan_memory(dump_, blocks_.channels(),
-                                  {run_.parameters, first_, last, run_.max_memory,
-                                   copies_ * sums + CameraPictures::kBytesToWrite});
+    const std::uint64_t layers = blocks_.channels().layers.size();
+    const std::uint64_t sums = CameraPictures::kBytesOfSums +
+                               layers * CameraPictures::kBytesOfSumsALayer +
+                               (run_.with_noise ? NoiseMoments::kBytesAPixel : 0);
+    const std::uint64_t writing =
+        CameraPictures::kBytesToWrite + layers * CameraPictures::kBytesToWriteALayer;
+    outcome_.memory =
+        plan_memory(dump_, blocks_.channels(),
+                    {run_.parameters, first_, last, run_.max_memory, copies_ * sums + writing});
     blocks_.set_last(last, outcome_.memory.blocks > 1);
     outcome_.passes = last - first_;
     outcome_.blocks = blocks_.count();

@@ -40,6 +40,9 @@ std::uint64_t record_bytes(const ChannelSet& set) {
         typename std::decay_t<decltype(member(std::declval<BlockRecords&>()))>::value_type;
     if (member(set) || name == "flags") bytes += sizeof(Value);
   });
+  for (const LightLayer& layer : set.layers) {
+    bytes += sizeof(Rgb) * (layer.contribution ? 1 : 0) + sizeof(Rgb) * (layer.unfiltered ? 1 : 0);
+  }
   return bytes;
 }
 
@@ -81,7 +84,11 @@ std::uint64_t reader_bytes(const Dump& dump, const BlockSize& size) {
 class Planner {
  public:
   Planner(const Dump& dump, const ChannelSet& channels, const MemoryRequest& request)
-      : dump_(dump), r_(request), record_bytes_(record_bytes(channels)) {}
+      : dump_(dump), r_(request), record_bytes_(record_bytes(channels)) {
+    for (const LightLayer& layer : channels.layers) {
+      if (layer.contribution) ++averaged_layers_;
+    }
+  }
 
   [[nodiscard]] MemoryEstimate estimate(const BlockSize& size, std::uint64_t blocks) const {
     const std::uint64_t longest = longest_block(size, dump_, r_.first_pass, r_.last_pass);
@@ -90,8 +97,10 @@ class Planner {
     result.pictures = dump_.pixels() * r_.bytes_a_pixel;
     result.block = longest * record_bytes_;
     result.blocks = blocks;
-    result.filter =
-        longest * (filter::memory_per_record(r_.parameters) + r_.beside_a_record) + r_.beside;
+    result.filter = longest * (filter::memory_per_record(r_.parameters) +
+                               averaged_layers_ * filter::memory_per_layer(r_.parameters) +
+                               r_.beside_a_record) +
+                    r_.beside;
     result.program += std::min(result.filter / kHolesShare, kMostHoles);
     result.stored = longest * dump_.reader().head().stride();
     return result;
@@ -152,7 +161,7 @@ class Planner {
 
   const Dump& dump_;
   const MemoryRequest& r_;
-  std::uint64_t record_bytes_;
+  std::uint64_t record_bytes_, averaged_layers_ = 0;
 };
 
 }  // namespace

@@ -4,7 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "film/film.h"
 #include "film/image.h"
@@ -17,10 +20,17 @@ namespace psf::run {
 struct PictureLayers {
   bool unfiltered = true, neighbors = true, radius = true;
   bool albedo = true, normal = true;  // where the dump has the channels
+  // The layers of the light, by name; not set: all that the dump has.
+  std::optional<std::vector<std::string>> light = {};
+
+  [[nodiscard]] static PictureLayers none() {
+    return {false, false, false, false, false, std::vector<std::string>()};
+  }
 };
 
 class CameraPictures {
  public:
+  // `layers.light`: the names of the layers that the records will have, in their order.
   CameraPictures(const filter::CameraView& camera, const PictureLayers& layers);
 
   // Adds record i of a filtered block [pixel]. Add the records of a pixel in path order, from one
@@ -32,18 +42,35 @@ class CameraPictures {
   // unfiltered-input.R/G/B, over the paths for which is_input() is true, filled as in
   // film::Film::filled_mean() where a pixel has no such path; neighbors.Y and radius.Y, means over
   // the paths with a vertex; albedo.R/G/B and normal.X/Y/Z, where paths without vertex count as 0.
+  // Of each layer of the light what there is of the whole: NAME.R/G/B, and unfiltered-input.NAME;
+  // the attribute film::kLightLayers has their names.
   [[nodiscard]] film::Image image() const;
 
-  // The bytes per pixel of the sums, and those that image() and writing it take temporarily.
-  static constexpr std::uint64_t kBytesOfSums = 5 * (3 * sizeof(double) + sizeof(std::uint64_t));
+  // The bytes per pixel of the sums, and those that image() and writing it take temporarily; of each
+  // layer of the light beside.
+  static constexpr std::uint64_t kBytesOfFilm = 3 * sizeof(double) + sizeof(std::uint64_t);
+  static constexpr std::uint64_t kBytesOfSums = 5 * kBytesOfFilm;
   static constexpr std::uint64_t kBytesToWrite = sizeof(float) * 2 * 14;
+  static constexpr std::uint64_t kBytesOfSumsALayer = 2 * kBytesOfFilm;
+  static constexpr std::uint64_t kBytesToWriteALayer = sizeof(float) * 2 * 6;
 
  private:
-  [[nodiscard]] std::vector<float> unfiltered() const;
+  // The light of one layer, or of all.
+  struct Light {
+    std::string name;  // "": all
+    film::Film filtered, unfiltered;
+  };
+  // What a path adds to a Light.
+  struct Radiance {
+    Rgb filtered, input;
+  };
+
+  [[nodiscard]] std::vector<float> filled(const film::Film& unfiltered) const;
+  static void add(Light& light, std::uint32_t pixel, filter::Role role, const Radiance& radiance);
   void add_guides(const filter::Records& records, std::size_t i, bool vertex);
 
-  film::Film filtered_, unfiltered_;
-  film::Film details_;  // neighbours, radius, 0
+  std::vector<Light> light_;  // all, then the layers
+  film::Film details_;        // neighbours, radius, 0
   PictureLayers layers_;
   film::Film albedo_, normal_;
 };

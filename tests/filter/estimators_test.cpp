@@ -21,7 +21,7 @@ TEST_CASE("Estimators have names of their own, and memory of their own on top of
     return filter::memory_per_record(parameters);
   };
   CHECK(bytes(Estimator::disk) == bytes(Estimator::average) + 4);
-  CHECK(bytes(Estimator::control) == bytes(Estimator::average) + 49);
+  CHECK(bytes(Estimator::control) == bytes(Estimator::average) + 61);
   CHECK(bytes(Estimator::adaptive) == bytes(Estimator::average) + 24);
   CHECK(bytes(Estimator::hash) == 37 + 172);
 }

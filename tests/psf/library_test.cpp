@@ -168,3 +168,23 @@ TEST_CASE("mistakes are errors that name what is wrong") {
                     Catch::Matchers::ContainsSubstring("there is no type f31"));
   CHECK(folder.file_count() == 0);
 }
+
+TEST_CASE("a picture with layers of the light is weighed by them") {
+  psf::Picture picture;
+  picture.width = 2;
+  picture.height = 1;
+  for (const char* colour : {"R", "G", "B"}) {
+    picture.layers.push_back({colour, {3, 5}});
+    picture.layers.push_back({std::string("key.") + colour, {1, 2}});
+    picture.layers.push_back({std::string("sky.") + colour, {2, 3}});
+  }
+  CHECK(picture.light_layers().empty());
+  CHECK_THROWS_WITH(picture.relight({}), StartsWith("the picture: has no layers of the light"));
+  picture.attributes = {{"psf:light-layers", "key,sky"}};
+  CHECK(picture.light_layers() == std::vector<std::string>{"key", "sky"});
+  const psf::Picture relit = picture.relight({{"key", {2, 1, 0}}});
+  CHECK(relit.rgb() == std::vector<float>{4, 3, 2, 7, 5, 3});
+  CHECK(relit.relight({{"sky", {0, 0, 0}}}).rgb() == std::vector<float>{2, 1, 0, 4, 2, 0});
+  CHECK_THROWS_WITH(picture.relight({{"moon", {1, 1, 1}}}),
+                    StartsWith("the picture: has no layer moon of the light; there are key, sky"));
+}

@@ -55,6 +55,25 @@ class Render(unittest.TestCase):
         self.assertEqual((dump.passes, dump.rendered["paths"]), (3, 3 * 20 * 16))
         self.assertEqual(dump.rendered["bytes"], os.path.getsize(self.file("p.pvb")))
 
+    def test_the_light_of_a_render_is_weighed_afterwards(self) -> None:
+        dump = psf.render(CORNELL, self.file("p.pvb"), size=(20, 16), passes=2, layers="bounces")
+        picture = dump.filter()
+        self.assertEqual(picture.light_layers, ["direct", "indirect", "camera"])
+        relit = picture.relight(direct=2, indirect=(1, 0.5, np.float32(0)))
+        relit.save(self.file("p.exr"))
+        run("psf", "filter", self.file("p.pvb"), "-o", self.file("c.exr"), "--quiet")
+        run("psf", "relight", self.file("c.exr"), "direct=2", "indirect=1,0.5,0", "-o",
+            self.file("r.exr"))
+        self.assertEqual(content(self.file("p.exr")), content(self.file("r.exr")))
+        np.testing.assert_allclose(relit["R"], 2 * picture["direct.R"] + picture["indirect.R"] +
+                                   picture["camera.R"], rtol=1e-6)
+        with self.assertRaisesRegex(psf.Error, "there are direct, indirect, camera"):
+            picture.relight(moon=1)
+        with self.assertRaisesRegex(TypeError, "direct: expected a number or three"):
+            picture.relight(direct=(1, 2))
+        with self.assertRaisesRegex(psf.Error, "has no layers of the light"):
+            psf.read_picture(self.file("c.exr")).relight(direct=1)
+
     def test_the_figures_are_named_as_those_of_the_command(self) -> None:
         run("psf-render", CORNELL, "--size", "4x4", "--passes", "1", "-o", self.file("c.pvb"),
             "--json", self.file("c.json"), "--quiet")

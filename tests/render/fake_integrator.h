@@ -11,7 +11,7 @@ namespace psf::tests {
 class FakeIntegrator : public render::Integrator {
  public:
   render::PathRecord trace(const render::Ray& ray, render::Sampler& sampler, bool shade,
-                           std::uint64_t& rays) const override {
+                           std::uint64_t& rays, const render::LayerSums&) const override {
     rays += 3;
     render::PathRecord record;
     const Vec2 u = sampler.next_2d();
@@ -33,6 +33,10 @@ class FakeIntegrator : public render::Integrator {
     return record;
   }
   std::vector<std::string> light_names() const override { return {"lamp", "sun"}; }
+  const std::vector<render::LayerInfo>& layers() const override { return none_; }
+
+ private:
+  std::vector<render::LayerInfo> none_;
 };
 
 inline render::Scene two_camera_scene() {

@@ -42,8 +42,9 @@ Estimate by_scattering(const Transport& transport, const Surface& from) {
       const Vec3 w = Frame(from.normal).to_world(cosine_hemisphere(s.next_2d()));
       walk.ray = {from.origin_toward(w), w};
       Surface hit;
+      Tally tally;
       const bool met = !std::isinf(transport.next_surface(walk, hit, rays));
-      sum += double{transport.met(walk, met ? &hit : nullptr).y};
+      sum += double{transport.met(walk, met ? &hit : nullptr, tally).y};
     }
     return sum / kPaths;
   });

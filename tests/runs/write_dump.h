@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../filter/record_set.h"
@@ -19,6 +20,8 @@ struct DumpOptions {
   formats::Codec codec = formats::Codec::zstd;
   std::uint32_t chunk_capacity = 100;
   std::uint32_t shade_rate = 1;
+  // Channels of three floats beside those of the records.
+  std::vector<std::pair<std::string, const std::vector<Rgb>*>> more = {};
 };
 
 inline void write_dump(const std::string& path, const RecordSet& set, const DumpOptions& options) {
@@ -43,7 +46,7 @@ inline void write_dump(const std::string& path, const RecordSet& set, const Dump
     std::size_t stride;
   };
   std::vector<Source> sources;
-  const auto add = [&](const char* name, formats::Type type, std::uint8_t components,
+  const auto add = [&](const std::string& name, formats::Type type, std::uint8_t components,
                        const void* data) {
     const auto& without = options.without_channels;
     if (std::find(without.begin(), without.end(), name) != without.end()) return;
@@ -66,6 +69,7 @@ inline void write_dump(const std::string& path, const RecordSet& set, const Dump
   add("direction", Type::f32, 3, set.direction.data());
   add("material", Type::u32, 1, set.material.data());
   add("roughness", Type::f32, 1, set.roughness.data());
+  for (const auto& [name, values] : options.more) add(name, Type::f32, 3, values->data());
 
   formats::WriterOptions writer_options;
   writer_options.codec = options.codec;

@@ -23,7 +23,7 @@ class VerbInputs {
       "materials": [{"name": "grey", "kind": "diffuse", "reflectance": 0.5}],
       "environment": {"radiance": 1},
       "shapes": [{"shape": "sphere", "center": [0, 1, 0], "radius": 1, "material": "grey"}]})";
-    make("psf-render IN/room.json -o IN/a.pvb --passes 4 --quiet --json IN/a.json");
+    make("psf-render IN/room.json -o IN/a.pvb --passes 4 --layers lights --quiet --json IN/a.json");
     make("psf filter IN/a.pvb -o IN/a.exr");
     make("psf tune IN/a.pvb --r0 4px,8px --block 1pass --json IN/tuned.json");
     make("psf sweep IN/a.pvb --reference IN/a.exr --r0 4px -o IN/sweep --pictures");
@@ -84,6 +84,7 @@ inline const std::vector<std::string>& every_verb() {
       "psf export IN/a.pvb -o OUT/e.ply --json OUT/e.json",
       "psf export IN/a.pvb -o OUT/arrays --json OUT/e.json",
       "psf compare IN/a.exr IN/a.exr --error OUT/d.exr --error OUT/d.png --json OUT/d.json",
+      "psf relight IN/a.exr sky=2,1,0.5 -o OUT/l.exr -o OUT/l.png --json OUT/l.json",
       "psf sweep IN/a.pvb --reference IN/a.exr --r0 4px,8px --pictures -o OUT/sweep --json "
       "OUT/s.json",
       "psf converge IN/a.pvb --reference IN/a.exr --r0 4px,8px --pictures -o OUT/converge --json "

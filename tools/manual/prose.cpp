@@ -51,6 +51,11 @@ const std::map<std::string, const char*> kProse = {
      "shows it. Pixels that are not finite are left out and counted, and then no bound holds. "
      "Any program's OpenEXR pictures will do; where several layers could be meant they are "
      "listed."},
+    {"psf-relight",
+     "A picture is linear in its lights, also when it is filtered: weights of its layers change "
+     "them afterwards, without rendering or filtering again. psf-render(1) writes the layers with "
+     "--layers, and psf-filter(1) the picture with them. What it writes can be relit again. "
+     "Without weights it says which layers there are, and how much of the light is theirs."},
     {"psf-sweep",
      "A list is values with commas between, or a range: 2px:32px:x2 multiplies, 0.1:0.9:0.1 "
      "adds. Rows that differ in r0 and delta alone share one traversal of the dump. Each row is "

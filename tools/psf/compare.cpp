@@ -165,12 +165,12 @@ void run(const CompareOptions& options) {
           .errors(picture.colors);
   for (std::size_t k = 0; k < choices.size(); ++k) report.rows[k].values = errors.mean(choices[k]);
 
-  print_values(report);
-  print_left_out(report);
-  write_error_pictures(options, report.first, errors);
   if (!options.common.json.empty()) {
     core::write_json_file(options.common.json, to_json(report));
   }
+  print_values(report);
+  print_left_out(report);
+  write_error_pictures(options, report.first, errors);
   judge(options, report);
 }
 

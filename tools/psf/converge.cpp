@@ -79,11 +79,11 @@ void print_and_write(const ConvergeOptions& options, const std::string& folder,
                      const study::ConvergeReport& report) {
   const study::ConvergePaths paths(folder);
   write(paths, report);
-  print_convergence(report);
-  fmt::print("wrote {} and converge.csv\n", paths.json);
   if (!options.common.json.empty()) {
     core::write_json_file(options.common.json, study::to_json(report), 1);
   }
+  print_convergence(report);
+  fmt::print("wrote {} and converge.csv\n", paths.json);
 }
 
 void run_dumps(const ConvergeOptions& options) {

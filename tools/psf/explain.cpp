@@ -89,11 +89,11 @@ void run(const ExplainOptions& options) {
   const explain::Attribution whence = explain::attribute(explanation);
   const explain::Report report{dump, explanation, whence,
                                options.all ? explain::kAllRows : options.top, options.all};
-  fmt::print("{}{}", explain::overview(report), explain::tables(report));
   if (!options.common.json.empty()) {
     core::write_text_file(options.common.json, explain::json(report) + "\n");
   }
   if (!options.ply.empty()) static_cast<void>(explain::write_ply(explanation, whence, options.ply));
+  fmt::print("{}{}", explain::overview(report), explain::tables(report));
 }
 
 }  // namespace

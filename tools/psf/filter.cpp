@@ -68,7 +68,7 @@ class PictureWriter {
     std::vector<std::string> written;
     for (std::size_t camera = 0; camera < pictures.size(); ++camera) {
       film::Image image = pictures[camera].image();
-      image.attributes = attributes_;
+      image.attributes.insert(image.attributes.begin(), attributes_.begin(), attributes_.end());
       film::add_picture(image.attributes, cameras_[camera].name, first_, first_ + passes);
       for (std::size_t output = 0; output < names_.count(); ++output) {
         core::throw_if_interrupted("not all pictures were written");
@@ -148,20 +148,6 @@ void wait_for_first_pass(const std::string& path) {
     core::throw_if_interrupted("no pass was committed yet");
     std::this_thread::sleep_for(kBetweenLooks);
   }
-}
-
-// Layers that were asked for by name and that the dump has no channel for.
-void check_layers(const run::Dump& dump, const std::string& text,
-                  const run::PictureLayers& layers) {
-  const auto need = [&](const char* layer, const char* channel) {
-    if (dump.reader().head().find(channel)) return;
-    throw Error(ErrorCode::bad_input,
-                fmt::format("{}: has no channel {}, which --layers {} needs; leave it out",
-                            dump.reader().path(), channel, layer));
-  };
-  if (text == "all") return;
-  if (layers.albedo) need("albedo", "reflectance");
-  if (layers.normal) need("normal", "normal");
 }
 
 void run(const FilterOptions& options) {

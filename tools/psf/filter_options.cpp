@@ -2,6 +2,7 @@
 #include "filter_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
@@ -44,7 +45,7 @@ std::vector<std::uint64_t> snapshots_of(const std::string& text, std::uint64_t p
 
 run::PictureLayers layers_of(const std::string& text) {
   if (text == "all") return {};
-  run::PictureLayers layers = {false, false, false, false, false};
+  run::PictureLayers layers = run::PictureLayers::none();
   if (text == "none") return layers;
   const std::pair<std::string_view, bool*> names[] = {{"unfiltered-input", &layers.unfiltered},
                                                       {"neighbors", &layers.neighbors},
@@ -56,17 +57,37 @@ run::PictureLayers layers_of(const std::string& text) {
     const std::string one = text.substr(begin, comma - begin);
     const auto* const found = std::find_if(std::begin(names), std::end(names),
                                            [&](const auto& name) { return name.first == one; });
-    if (found == std::end(names)) {
-      throw Error(
-          ErrorCode::usage,
-          "--layers: no layer \"" + one +
-              "\"; write all, none, or some of unfiltered-input, neighbors, radius, albedo, "
-              "normal, with commas between");
+    if (found != std::end(names)) {
+      *found->second = true;
+    } else {
+      layers.light->push_back(one);
     }
-    *found->second = true;
     begin = comma + 1;
   }
   return layers;
+}
+
+void check_layers(const run::Dump& dump, const std::string& text,
+                  const run::PictureLayers& layers) {
+  if (text == "all") return;
+  const auto need = [&](const char* layer, const char* channel) {
+    if (dump.reader().head().find(channel)) return;
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: has no channel {}, which --layers {} needs; leave it out",
+                            dump.reader().path(), channel, layer));
+  };
+  if (layers.albedo) need("albedo", "reflectance");
+  if (layers.normal) need("normal", "normal");
+  std::vector<std::string> names = {"unfiltered-input", "neighbors", "radius", "albedo", "normal"};
+  for (const run::LightLayer& layer : run::light_layers(dump.reader())) names.push_back(layer.name);
+  for (const std::string& name : *layers.light) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("--layers: no layer \"{}\"; write all, none, or some of {}, with commas "
+                    "between",
+                    name, fmt::join(names, ", ")));
+  }
 }
 
 void add_parameter_options(CLI::App& command, filter::ParameterTexts& options) {
@@ -101,7 +122,7 @@ void add_filter_options(CLI::App& command, FilterOptions& options) {
   command
       .add_option("--layers", options.layers,
                   "of an .exr beside the picture: all, none, or some of unfiltered-input, "
-                  "neighbors, radius, albedo, normal")
+                  "neighbors, radius, albedo, normal, and the dump's layers of the light")
       ->type_name("NAME,NAME,...")
       ->capture_default_str();
   const std::size_t before = command.get_options().size();

@@ -31,8 +31,11 @@ struct FilterOptions : filter::ParameterTexts {
 // must be the only line.
 void fit_terms(const run::Dump& dump, std::span<filter::Parameters> sets, filter::TermSet asked,
                std::vector<std::string>& notes);
-// The layers that `text` names: a list, "all" or "none". Throws Error{usage} for an unknown name.
+// The layers that `text` names: a list, "all" or "none"; any name may be of a layer of the light.
 [[nodiscard]] run::PictureLayers layers_of(const std::string& text);
+// Throws Error{usage} for a name that is none, and Error{bad_input} for a layer of which the dump
+// lacks the channel.
+void check_layers(const run::Dump& dump, const std::string& text, const run::PictureLayers& layers);
 
 // Each of these declares options, which write into `options`.
 void add_parameter_options(CLI::App& command, filter::ParameterTexts& options);

@@ -257,19 +257,19 @@ void run(const InfoOptions& options) {
   Statistics statistics;
   if (options.statistics) statistics = read_statistics(reader, options.common.quiet);
 
-  print_overview(reader, metadata);
-  print_tables(metadata);
-  print_channels(reader, sizes);
   Noise noise;
-  if (options.statistics) {
-    print_statistics(reader, statistics);
-    noise = read_noise(options.input);
-    print_noise(metadata, noise);
-  }
+  if (options.statistics) noise = read_noise(options.input);
   if (!options.common.json.empty()) {
     nlohmann::ordered_json json = to_json(reader, sizes, statistics);
     if (!noise.of.empty()) json["noise"] = study::describe_noise(noise.of, metadata.cameras);
     core::write_json_file(options.common.json, json);
+  }
+  print_overview(reader, metadata);
+  print_tables(metadata);
+  print_channels(reader, sizes);
+  if (options.statistics) {
+    print_statistics(reader, statistics);
+    print_noise(metadata, noise);
   }
 }
 

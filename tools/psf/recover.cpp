@@ -65,10 +65,10 @@ void run(const RecoverVerb& verb) {
                          progress.advance(done, total);
                        });
   progress.finish();
-  print(verb, report);
   if (!verb.common.json.empty()) {
     core::write_json_file(verb.common.json, to_json(verb, report));
   }
+  print(verb, report);
   if (!report.nothing_lost()) {
     throw Error(ErrorCode::comparison,
                 fmt::format("{}: {} lost; {} holds the rest", verb.input,

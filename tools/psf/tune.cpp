@@ -117,9 +117,11 @@ void run(const TuneOptions& options) {
   };
   const study::TuneResult tuning = study::tune(dump, tune);
   progress.finish();
+  if (!options.common.json.empty()) {
+    core::write_json_file(options.common.json, study::to_json(tuning, dump, tune, kVersion), 1);
+  }
   print(tuning, dump);
   if (options.common.json.empty()) return;
-  core::write_json_file(options.common.json, study::to_json(tuning, dump, tune, kVersion), 1);
   fmt::print("psf filter --tuned {} takes the choice\n", options.common.json);
 }
 

@@ -15,6 +15,7 @@ void add_export(CLI::App& app);
 void add_filter(CLI::App& app);
 void add_info(CLI::App& app);
 void add_recover(CLI::App& app);
+void add_relight(CLI::App& app);
 void add_report(CLI::App& app);
 void add_sweep(CLI::App& app);
 void add_tune(CLI::App& app);

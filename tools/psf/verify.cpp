@@ -51,10 +51,10 @@ void run(const VerifyOptions& options) {
       });
   progress.finish();
 
-  for (const formats::Fault& fault : report.faults) fmt::print("{}\n", fault.text());
   if (!options.common.json.empty()) {
     core::write_json_file(options.common.json, to_json(options.input, report));
   }
+  for (const formats::Fault& fault : report.faults) fmt::print("{}\n", fault.text());
   const std::string tail = report.uncommitted_bytes == 0
                                ? ""
                                : fmt::format("; {} bytes behind the last commit are not committed",

@@ -18,19 +18,34 @@ class TreeEngine final : public Engine {
 
   [[nodiscard]] bool is_moderate() const { return packets_.is_moderate(); }
 
-  void apply(std::span<const Rgb> values, bool count_refusals, std::span<Rgb> out,
-             std::span<std::uint32_t> neighbors, Statistics& statistics) override {
-    packets_.tree().set_values(values, p_.area);
+  void apply(std::span<const Averaged> all, bool count_refusals, std::span<std::uint32_t> neighbors,
+             Statistics& statistics) override {
+    const Tree& tree = packets_.tree();
+    const WeightTerms& terms = p_.weights.terms();
+    std::vector<TreeSums> sums;
+    for (const Averaged& one : all) sums.emplace_back(tree, one.values, p_.area);
     const std::size_t size = packets_.order().size();
     std::vector<Statistics> parts(core::range_count(size, Packets::kGrain));
     core::parallel_for(size, Packets::kGrain, [&](std::size_t begin, std::size_t end) {
       core::throw_if_interrupted("no picture was written");
       Statistics& counts = parts[begin / Packets::kGrain];
+      Found found;
       packets_.each(begin, end, [&](auto queries, auto nodes, Packet& packet) {
-        engine::add_sources(packets_.tree(), p_.weights.terms(), nodes, packet);
+        if (all.size() == 1) {
+          add_sources(tree, sums[0], terms, nodes, packet);
+          average(queries, packet, all[0], neighbors);
+        } else {
+          find_sources(tree, terms, nodes, packet, found);
+          for (std::size_t k = 0; k < all.size(); ++k) {
+            add_found(sums[k], found, packet);
+            average(queries, packet, all[k], neighbors);
+          }
+        }
         if (count_refusals) count(queries, nodes, packet, counts);
-        for (std::size_t k = 0; k < queries.size(); ++k) {
-          neighbors[queries[k]] = finish(packet, k, queries[k], values, out[queries[k]], counts);
+        for (const std::uint32_t i : queries) {
+          counts.add_query(neighbors[i]);
+          if (neighbors[i] > 0) continue;
+          average_adopted(adopt(tree, packets_.index(), p_, i, p_.radius[i]), i, all, counts);
         }
       });
     });
@@ -38,20 +53,23 @@ class TreeEngine final : public Engine {
   }
 
  private:
-  std::uint32_t finish(const Packet& packet, std::size_t k, std::uint32_t i,
-                       std::span<const Rgb> values, Rgb& out, Statistics& counts) const {
-    Sum sum{packet.sum[0][k], packet.sum[1][k], packet.sum[2][k]};
-    auto count = static_cast<std::uint32_t>(packet.count[k]);
-    // The walk met i like any other source; w_ii = 1 whatever the terms say.
-    if (packet.met_itself[k] == 0 && packets_.is_source(i)) {
-      sum.add(values[i], p_.area.empty() ? 1 : double{p_.area[i]});
-      ++count;
+  // Averages one value of the queries that have a neighbour.
+  void average(std::span<const std::uint32_t> queries, const Packet& packet, const Averaged& one,
+               std::span<std::uint32_t> neighbors) const {
+    for (std::size_t k = 0; k < queries.size(); ++k) {
+      const std::uint32_t i = queries[k];
+      Sum sum{packet.sum[0][k], packet.sum[1][k], packet.sum[2][k]};
+      auto count = static_cast<std::uint32_t>(packet.count[k]);
+      // The walk met i like any other source; w_ii = 1 whatever the terms say.
+      if (packet.met_itself[k] == 0 && packets_.is_source(i)) {
+        sum.add(one.values[i], p_.area.empty() ? 1 : double{p_.area[i]});
+        ++count;
+      }
+      neighbors[i] = count;
+      if (count > 0) {
+        one.out[i] = quotient(sum, count, !p_.area.empty(), p_.radius[i], one.values[i]);
+      }
     }
-    counts.add_query(count);
-    out = count > 0 ? quotient(sum, count, !p_.area.empty(), p_.radius[i], values[i])
-                    : average_of(adopt(packets_.tree(), packets_.index(), p_, i, p_.radius[i]),
-                                 values, counts);
-    return count;
   }
 
   void count(std::span<const std::uint32_t> queries, std::span<const std::uint32_t> nodes,

@@ -71,8 +71,7 @@ std::vector<std::uint32_t> in_order() {
 
 struct Floor::State {
   explicit State(const WeightTerms& on)
-      : terms(on), tree(records.view(), in_order(), ColumnPlan(on)) {
-    tree.set_values(records.value, {});
+      : terms(on), tree(records.view(), in_order(), ColumnPlan(on)), sums(tree, records.value, {}) {
     // The queries are the sources of the first group.
     extremes(tree.plan(), tree.plan().count, tree.group(0), tree.group(0), low, high);
     packet.columns = tree.group(0);
@@ -87,6 +86,7 @@ struct Floor::State {
   WeightTerms terms;
   Strewn records;
   Tree tree;
+  TreeSums sums;
   alignas(64) float low[kMaxColumns * kWidth] = {};  // every kWidth-th counts
   alignas(64) float high[kMaxColumns * kWidth] = {};
   Packet packet;
@@ -102,7 +102,7 @@ std::uint64_t Floor::run(std::size_t times) {
     for (auto& sum : packet.sum) std::fill(sum, sum + kWidth, 0.0);
     std::fill(packet.count, packet.count + kWidth, 0);
     constexpr std::uint32_t kParent = 0;
-    add_sources(state_->tree, state_->terms, {&kParent, 1}, packet);
+    add_sources(state_->tree, state_->sums, state_->terms, {&kParent, 1}, packet);
     passed += static_cast<std::uint64_t>(std::accumulate(packet.count, packet.count + kWidth, 0));
   }
   return passed;

@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "filter/engine/count-inl.h"
+#include "filter/engine/found-inl.h"
 #include "filter/engine/rings-inl.h"
 #include "filter/engine/walk-inl.h"
 
@@ -41,15 +42,32 @@ void extremes_on(const ColumnPlan& plan, std::size_t columns, const float* lows,
   }
 }
 
-void add_sources_on(const Tree& tree, const WeightTerms& terms,
+void add_sources_on(const Tree& tree, const TreeSums& sums, const WeightTerms& terms,
                     std::span<const std::uint32_t> parents, Packet& packet) {
-  AverageWalk(tree, terms, packet).run(parents);
+  SumSink sink(sums, packet);
+  SourceWalk(tree, terms, packet, sink).run(parents);
+  sink.finish();
 }
 
-void add_to_rings_on(const Tree& tree, const WeightTerms& terms,
+void find_sources_on(const Tree& tree, const WeightTerms& terms,
+                     std::span<const std::uint32_t> parents, Packet& packet, Found& found) {
+  found.clear();
+  FoundSink sink(found);
+  SourceWalk(tree, terms, packet, sink).run(parents);
+}
+
+void add_found_on(const TreeSums& sums, const Found& found, Packet& packet) {
+  for (auto& sum : packet.sum) std::fill_n(sum, kWidth, 0.0);
+  std::fill_n(packet.count, kWidth, 0);
+  SumSink sink(sums, packet);
+  replay(found, sink);
+  sink.finish();
+}
+
+void add_to_rings_on(const Tree& tree, const TreeSums& sums, const WeightTerms& terms,
                      std::span<const std::uint32_t> parents, Packet& packet,
                      const RingPacket& rings) {
-  RingWalk(tree, terms, packet, rings).run(parents);
+  RingWalk(tree, sums, terms, packet, rings).run(parents);
 }
 
 void average_balls_on(const RingPacket& rings, std::size_t q, const RingMeans& means) {
@@ -69,6 +87,8 @@ namespace psf::filter::engine {
 
 HWY_EXPORT(extremes_on);
 HWY_EXPORT(add_sources_on);
+HWY_EXPORT(find_sources_on);
+HWY_EXPORT(add_found_on);
 HWY_EXPORT(add_to_rings_on);
 HWY_EXPORT(average_balls_on);
 HWY_EXPORT(count_on);
@@ -77,13 +97,20 @@ void extremes(const ColumnPlan& plan, std::size_t columns, const float* lows, co
               float* low, float* high) {
   HWY_DYNAMIC_DISPATCH(extremes_on)(plan, columns, lows, highs, low, high);
 }
-void add_sources(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
-                 Packet& packet) {
-  HWY_DYNAMIC_DISPATCH(add_sources_on)(tree, terms, parents, packet);
+void add_sources(const Tree& tree, const TreeSums& sums, const WeightTerms& terms,
+                 std::span<const std::uint32_t> parents, Packet& packet) {
+  HWY_DYNAMIC_DISPATCH(add_sources_on)(tree, sums, terms, parents, packet);
 }
-void add_to_rings(const Tree& tree, const WeightTerms& terms,
+void find_sources(const Tree& tree, const WeightTerms& terms,
+                  std::span<const std::uint32_t> parents, Packet& packet, Found& found) {
+  HWY_DYNAMIC_DISPATCH(find_sources_on)(tree, terms, parents, packet, found);
+}
+void add_found(const TreeSums& sums, const Found& found, Packet& packet) {
+  HWY_DYNAMIC_DISPATCH(add_found_on)(sums, found, packet);
+}
+void add_to_rings(const Tree& tree, const TreeSums& sums, const WeightTerms& terms,
                   std::span<const std::uint32_t> parents, Packet& packet, const RingPacket& rings) {
-  HWY_DYNAMIC_DISPATCH(add_to_rings_on)(tree, terms, parents, packet, rings);
+  HWY_DYNAMIC_DISPATCH(add_to_rings_on)(tree, sums, terms, parents, packet, rings);
 }
 void average_balls(const RingPacket& rings, std::size_t q, const RingMeans& means) {
   HWY_DYNAMIC_DISPATCH(average_balls_on)(rings, q, means);

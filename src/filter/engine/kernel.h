@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "filter/engine/found.h"
 #include "filter/engine/tree.h"
+#include "filter/engine/tree_sums.h"
 #include "filter/weights.h"
 
 namespace psf::filter::engine {
@@ -71,13 +73,20 @@ void extremes(const ColumnPlan& plan, std::size_t columns, const float* lows, co
               float* low, float* high);
 
 // Adds to the sums and counts of each query of `packet` the sources below the given parents that
-// pass chi and every term that is on. Sets packet.met_itself.
-void add_sources(const Tree& tree, const WeightTerms& terms, std::span<const std::uint32_t> parents,
-                 Packet& packet);
+// pass chi and every term that is on. Sets packet.met_itself. `sums` are of the tree.
+void add_sources(const Tree& tree, const TreeSums& sums, const WeightTerms& terms,
+                 std::span<const std::uint32_t> parents, Packet& packet);
 
-// Does the same for all radii in one walk, but adds each source to its ring in `rings`. Sets
+// The same in two steps, for several values of each source: every pair is tested once. Step one
+// sets `found` and packet.met_itself; step two, for each value, sets the packet's sums and counts to
+// what add_sources() adds to zeros, bit for bit.
+void find_sources(const Tree& tree, const WeightTerms& terms,
+                  std::span<const std::uint32_t> parents, Packet& packet, Found& found);
+void add_found(const TreeSums& sums, const Found& found, Packet& packet);
+
+// Does the same as add_sources() for all radii in one walk, but adds each source to its ring in `rings`. Sets
 // packet.met_itself.
-void add_to_rings(const Tree& tree, const WeightTerms& terms,
+void add_to_rings(const Tree& tree, const TreeSums& sums, const WeightTerms& terms,
                   std::span<const std::uint32_t> parents, Packet& packet, const RingPacket& rings);
 
 // Computes `means` of the q-th query of the packet from `rings`, after add_to_rings().

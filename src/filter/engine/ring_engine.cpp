@@ -80,7 +80,7 @@ class RingEngine::Range {
                            plane_reach_.begin(),
                            sums_.begin(),
                            whole_.begin()};
-    add_to_rings(e_.packets_.tree(), p_.weights.terms(), nodes, packet, rings);
+    add_to_rings(e_.packets_.tree(), *e_.sums_, p_.weights.terms(), nodes, packet, rings);
     for (std::size_t q = 0; q < queries.size(); ++q) {
       finish(queries[q], q, rings, packet.met_itself[q] != 0);
     }
@@ -153,16 +153,13 @@ class RingEngine::Range {
 
   // What an orphan averages depends on the radius only where `plane` does.
   Rgb adopt_one(std::uint32_t i, float r_i, std::size_t k, std::optional<Rgb>& before) {
-    Statistics& counts = statistics_[k];
     if (!before || p_.weights.terms().plane) {
       const Packets& packets = e_.packets_;
       const Adopted adopted = adopt(packets.tree(), packets.index(), p_, i, r_i);
       matched_ = adopted.matched;
-      before = average_of(adopted, e_.values_, counts);
-    } else {
-      ++counts.orphans;
-      if (!matched_) ++counts.orphans_unmatched;
+      before = mean_of(adopted, e_.values_);
     }
+    statistics_[k].add_orphan(matched_);
     return *before;
   }
 
@@ -184,7 +181,7 @@ class RingEngine::Range {
 
 void RingEngine::set_values(std::span<const Rgb> values) {
   values_ = values;
-  packets_.tree().set_values(values, p_.area);
+  sums_.emplace(packets_.tree(), values, p_.area);
 }
 
 void RingEngine::average(std::size_t begin, std::size_t end, std::span<Statistics> statistics,

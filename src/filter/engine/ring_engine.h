@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "filter/engine/packets.h"
@@ -55,6 +56,7 @@ class RingEngine {
   std::span<const double> scales_, basis_;
   std::span<const Rgb> values_;
   Packets packets_;
+  std::optional<TreeSums> sums_;
 };
 
 }  // namespace psf::filter::engine

@@ -16,8 +16,10 @@ namespace psf::filter::engine::HWY_NAMESPACE {
 
 class RingWalk {
  public:
-  RingWalk(const Tree& tree, const WeightTerms& on, Packet& packet, const RingPacket& rings)
+  RingWalk(const Tree& tree, const TreeSums& sums, const WeightTerms& on, Packet& packet,
+           const RingPacket& rings)
       : tree_(tree),
+        sums_(sums),
         on_(on),
         packet_(packet),
         rings_(rings),
@@ -25,9 +27,7 @@ class RingWalk {
         judge_(tree, terms_, packet) {}
 
   HWY_INLINE void run(std::span<const std::uint32_t> parents) {
-    for (std::size_t lane = 0; lane < kWidth; lane += kLanes) {
-      Sums(packet_, lane).set_met_itself(Terms(tree_.plan(), on_, packet_, lane).self());
-    }
+    set_met_itself(tree_.plan(), on_, packet_);
     if (!judge_.is_reached()) return;
     each_family(parents, [this](std::size_t family, std::uint32_t asked)
                              HWY_ATTR { visit_parents(family, asked); });
@@ -119,7 +119,7 @@ class RingWalk {
   // Adds every source below a node to `ring` of every query.
   HWY_INLINE void add_node(LevelName level, std::size_t family, std::size_t place,
                            std::size_t ring) {
-    const double* sums = tree_.sums(level, family) + place;
+    const double* sums = sums_.below(level, family) + place;
     alignas(32) const double value[4] = {
         sums[0], sums[kWidth], sums[2 * kWidth],
         static_cast<double>(tree_.size_of(level, family * kWidth + place))};
@@ -129,7 +129,7 @@ class RingWalk {
 
   // Tests the records of a group pair by pair, and adds those that pass to their rings.
   HWY_INLINE void add_group(std::size_t group, std::uint32_t open, const Window& window) {
-    const double* values = tree_.values(group);
+    const double* values = sums_.values(group);
     for (std::size_t k = 0; k < kWidth; ++k) {
       value_[k][0] = values[k];
       value_[k][1] = values[kWidth + k];
@@ -235,6 +235,7 @@ class RingWalk {
   static constexpr std::size_t kAtOnce = 4;  // number of sources that share a loop over rings
 
   const Tree& tree_;
+  const TreeSums& sums_;
   const WeightTerms& on_;
   Packet& packet_;
   const RingPacket& rings_;

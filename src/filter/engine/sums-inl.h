@@ -108,14 +108,10 @@ class Sums {
  public:
   Sums(Packet& packet, std::size_t lane) : packet_(packet), lane_(lane) {}
 
-  HWY_INLINE void set_met_itself(M mask) {
-    hn::Store(hn::VecFromMask(kDI, hn::RebindMask(kDI, mask)), kDI, packet_.met_itself + lane_);
-  }
-
   // Calls walk(add). `walk` calls add(lanes, value) for each source: it adds the source's value, of
   // which `value` points to the first component in a group's (3, 16) values, to the masked lanes.
-  template <class Walk>
-  HWY_INLINE void add(const Walk& walk) {
+  template <class Visit>
+  HWY_INLINE void add(const Visit& walk) {
     VD total[3][kParts];  // kept in registers during the walk
     for (std::size_t c = 0; c < 3; ++c) {
       for (std::size_t part = 0; part < kParts; ++part) {
@@ -148,6 +144,29 @@ class Sums {
 
   Packet& packet_;
   std::size_t lane_;
+};
+
+// Adds up the values of the sources that a walk finds, at once.
+class SumSink {
+ public:
+  SumSink(const TreeSums& sums, Packet& packet) : sums_(sums), packet_(packet) {}
+
+  HWY_INLINE void add_nodes(LevelName level, std::size_t family, std::uint32_t bits,
+                            std::size_t count) {
+    whole_.add(sums_.below(level, family), bits, count);
+  }
+  template <class Visit>
+  HWY_INLINE void add_sources(std::size_t lane, std::size_t, const Visit& walk) {
+    Sums(packet_, lane).add(walk);
+  }
+  [[nodiscard]] HWY_INLINE const double* group(std::size_t g) const { return sums_.values(g); }
+
+  HWY_INLINE void finish() const { whole_.add_to(packet_); }
+
+ private:
+  const TreeSums& sums_;
+  Packet& packet_;
+  WholeSums whole_;
 };
 
 }  // namespace psf::filter::engine::HWY_NAMESPACE

@@ -18,10 +18,8 @@ Tree::Tree(const Records& records, std::vector<std::uint32_t> order, const Colum
     l.nodes = core::range_count(size(), kRecordsBelow[level]);
     const std::size_t families = core::range_count(l.nodes, kWidth);
     l.bounds = core::Buffer<float>(families * 2 * columns(level) * kWidth);
-    l.sums = core::Buffer<double>(families * 3 * kWidth);
   }
   leaves_ = core::Buffer<float>(nodes(kGroups) * plan_.count * kWidth);
-  values_ = core::Buffer<double>(nodes(kGroups) * 3 * kWidth);
 
   const std::span<const std::uint32_t> all = order_;
   core::parallel_for(nodes(kParents), kGrain, [&](std::size_t begin, std::size_t end) {
@@ -93,43 +91,6 @@ search::Box Tree::box(LevelName level, std::size_t node) const {
   const float* low = bounds(level, node / kWidth) + node % kWidth;
   const float* high = low + columns(level) * kWidth;
   return {{low[0], low[kWidth], low[2 * kWidth]}, {high[0], high[kWidth], high[2 * kWidth]}};
-}
-
-void Tree::set_values(std::span<const Rgb> values, std::span<const float> area) {
-  core::parallel_for(nodes(kParents), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t g = begin * kWidth; g < std::min(nodes(kGroups), end * kWidth); ++g) {
-      double* out = &values_[g * 3 * kWidth];
-      for (std::size_t k = 0; k < kWidth; ++k) {
-        const std::size_t p = g * kWidth + k;
-        const std::uint32_t j = order_[std::min(p, size() - 1)];
-        const double weight = p >= size() ? 0 : area.empty() ? 1 : double{area[j]};
-        out[k] = weight * double{values[j].x};
-        out[kWidth + k] = weight * double{values[j].y};
-        out[2 * kWidth + k] = weight * double{values[j].z};
-      }
-    }
-    for (std::size_t p = begin; p < end; ++p) sum_parent(p);
-  });
-}
-
-// The sums of its quads, of its groups, and its own.
-void Tree::sum_parent(std::size_t p) {
-  const std::size_t last = std::min(nodes(kGroups), (p + 1) * kWidth);
-  for (std::size_t c = 0; c < 3; ++c) {
-    double parent = 0;
-    for (std::size_t g = p * kWidth; g < last; ++g) {
-      const double* below = values(g) + c * kWidth;
-      double whole = 0;
-      for (std::size_t k = g * kQuad; k < (g + 1) * kQuad; ++k, below += kQuad) {
-        const double quad = ((below[0] + below[1]) + below[2]) + below[3];
-        levels_[kQuads].sums[(k / kWidth * 3 + c) * kWidth + k % kWidth] = quad;
-        whole += quad;
-      }
-      levels_[kGroups].sums[(p * 3 + c) * kWidth + g % kWidth] = whole;
-      parent += whole;
-    }
-    levels_[kParents].sums[(p / kWidth * 3 + c) * kWidth + p % kWidth] = parent;
-  }
 }
 
 }  // namespace psf::filter::engine

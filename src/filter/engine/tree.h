@@ -1,5 +1,5 @@
 // The tree that the kernel walks: the sources in a compact order, in groups of 16 and groups of
-// groups, with bounds and sums.
+// groups, with bounds. What is added up on the walk is in tree_sums.h.
 #pragma once
 
 #include <algorithm>
@@ -34,10 +34,6 @@ class Tree {
   // `order`: the sources' record numbers in a compact order.
   Tree(const Records& records, std::vector<std::uint32_t> order, const ColumnPlan& plan);
 
-  // Sets the sources' values to values[j], times area[j] unless `area` is empty, and sums them up;
-  // both are indexed by record number.
-  void set_values(std::span<const Rgb> values, std::span<const float> area);
-
   [[nodiscard]] std::size_t size() const { return order_.size(); }
   [[nodiscard]] std::span<const std::uint32_t> order() const { return order_; }
   [[nodiscard]] const ColumnPlan& plan() const { return plan_; }
@@ -45,8 +41,6 @@ class Tree {
   [[nodiscard]] const float* group(std::size_t g) const {
     return &leaves_[g * plan_.count * kWidth];
   }
-  // The values of group g, (3, 16).
-  [[nodiscard]] const double* values(std::size_t g) const { return &values_[g * 3 * kWidth]; }
   [[nodiscard]] std::size_t nodes(LevelName level) const { return levels_[level].nodes; }
   // The number of records below a node.
   [[nodiscard]] std::size_t size_of(LevelName level, std::size_t node) const {
@@ -63,15 +57,10 @@ class Tree {
     return level == kQuads ? 3 : plan_.count;
   }
   [[nodiscard]] search::Box box(LevelName level, std::size_t node) const;
-  // The sums of the values below each of a family's nodes, (3, 16).
-  [[nodiscard]] const double* sums(LevelName level, std::size_t family) const {
-    return &levels_[level].sums[family * 3 * kWidth];
-  }
 
  private:
   struct Level {
     core::Buffer<float> bounds;  // (families, 2, columns, 16); the last node is repeated at the end
-    core::Buffer<double> sums;   // (families, 3, 16), each added up in the order of the nodes below
     std::size_t nodes = 0;
   };
 
@@ -80,12 +69,10 @@ class Tree {
   void bound_parent(std::size_t parent);
   // Repeats the last node's bounds up to the end of its family.
   void fill_last_family(LevelName level);
-  void sum_parent(std::size_t parent);
 
   ColumnPlan plan_;
   std::vector<std::uint32_t> order_;
-  core::Buffer<float> leaves_;   // (groups, columns, 16)
-  core::Buffer<double> values_;  // (groups, 3, 16); 0 beyond the last record
+  core::Buffer<float> leaves_;  // (groups, columns, 16)
   Level levels_[kLevels];
 };
 

@@ -103,6 +103,14 @@ class Judge {
   PacketBounds queries_;
 };
 
+// Sets packet.met_itself.
+HWY_INLINE void set_met_itself(const ColumnPlan& plan, const WeightTerms& on, Packet& packet) {
+  for (std::size_t lane = 0; lane < kWidth; lane += kLanes) {
+    const M self = Terms(plan, on, packet, lane).self();
+    hn::Store(hn::VecFromMask(kDI, hn::RebindMask(kDI, self)), kDI, packet.met_itself + lane);
+  }
+}
+
 // Calls visit(family, bits) for each family that has any of the given parents; `bits` are its nodes
 // among them.
 template <class Visit>
@@ -117,23 +125,30 @@ HWY_INLINE void each_family(std::span<const std::uint32_t> parents, const Visit&
   }
 }
 
-class AverageWalk {
+// Gives `sink` the sources that a packet averages: nodes of which every source is averaged by every
+// query, and single sources with the queries that average them. A sink has
+//
+//   add_nodes(level, family, bits, count)  the nodes of a family whose bits are set; `count`: the
+//                                          number of sources below them
+//   add_sources(lane, most, walk)          calls walk(add), which calls add(lanes, source) at most
+//                                          `most` times: the queries, from `lane` on, of a source
+//   group(g)                               the first source of group g; others are at group(g) + k
+template <class Sink>
+class SourceWalk {
  public:
-  AverageWalk(const Tree& tree, const WeightTerms& on, Packet& packet)
+  SourceWalk(const Tree& tree, const WeightTerms& on, Packet& packet, Sink& sink)
       : tree_(tree),
         on_(on),
         packet_(packet),
+        sink_(sink),
         terms_(tree.plan(), on, packet, 0),
         judge_(tree, terms_, packet) {}
 
   HWY_INLINE void run(std::span<const std::uint32_t> parents) {
-    for (std::size_t lane = 0; lane < kWidth; lane += kLanes) {
-      Sums(packet_, lane).set_met_itself(Terms(tree_.plan(), on_, packet_, lane).self());
-    }
+    set_met_itself(tree_.plan(), on_, packet_);
     if (!judge_.is_reached()) return;
     each_family(parents, [this](std::size_t family, std::uint32_t asked)
                              HWY_ATTR { visit_parents(family, asked); });
-    whole_.add_to(packet_);
   }
 
  private:
@@ -176,8 +191,8 @@ class AverageWalk {
     if (nodes == 0) return;
     const std::size_t last = family * kWidth + static_cast<std::size_t>(std::bit_width(nodes)) - 1;
     const std::size_t before_last = static_cast<std::size_t>(std::popcount(nodes)) - 1;
-    whole_.add(tree_.sums(level, family), nodes,
-               before_last * kRecordsBelow[level] + tree_.size_of(level, last));
+    sink_.add_nodes(level, family, nodes,
+                    before_last * kRecordsBelow[level] + tree_.size_of(level, last));
   }
 
   // For groups of which only chi is open: adds the quads that are inside all balls for every query,
@@ -191,8 +206,8 @@ class AverageWalk {
       const Balls balls(judge_.queries(), tree_.bounds(kQuads, family), 3);
       const std::uint32_t inside = balls.inside & wanted;
       if (inside != 0) {
-        whole_.add(tree_.sums(kQuads, family), inside,
-                   static_cast<std::size_t>(std::popcount(inside)) * kQuad);
+        sink_.add_nodes(kQuads, family, inside,
+                        static_cast<std::size_t>(std::popcount(inside)) * kQuad);
       }
       quad_count_ += list(balls.touched & ~balls.inside & wanted,
                           static_cast<std::int32_t>(family * kWidth), quads_ + quad_count_);
@@ -208,14 +223,14 @@ class AverageWalk {
 
   HWY_INLINE void add_quads(std::size_t lane) {
     const Chi chi = Terms(tree_.plan(), on_, packet_, lane).chi();
-    Sums(packet_, lane).add([&](auto&& add) {
+    sink_.add_sources(lane, quad_count_ * kQuad, [&](auto&& add) {
       for (std::size_t q = 0; q < quad_count_; ++q) {
         const std::size_t group = static_cast<std::size_t>(quads_[q]) / kQuadsInGroup;
         const std::size_t first = static_cast<std::size_t>(quads_[q]) % kQuadsInGroup * kQuad;
         const float* columns = tree_.group(group) + first;
-        const double* values = tree_.values(group) + first;
+        const auto source = sink_.group(group) + first;
         for (std::size_t k = 0; k < kQuad; ++k) {
-          add(chi.pass(OneSource{columns + k}), values + k);
+          add(chi.pass(OneSource{columns + k}), source + k);
         }
       }
     });
@@ -225,7 +240,7 @@ class AverageWalk {
   HWY_INLINE void add_group(std::size_t group, std::uint32_t open, std::size_t lane) {
     const Terms terms(tree_.plan(), on_, packet_, lane);
     const float* columns = tree_.group(group);
-    const double* values = tree_.values(group);
+    const auto first_source = sink_.group(group);
     const std::size_t count = tree_.size_of(kGroups, group);
     const Chi chi = terms.chi();
     M pass[kWidth];
@@ -236,17 +251,17 @@ class AverageWalk {
         pass[k] = hn::And(pass[k], term.pass(OneSource{first + k}));
       }
     });
-    Sums(packet_, lane).add([&](auto&& add) {
-      for (std::size_t k = 0; k < count; ++k) add(pass[k], values + k);
+    sink_.add_sources(lane, count, [&](auto&& add) {
+      for (std::size_t k = 0; k < count; ++k) add(pass[k], first_source + k);
     });
   }
 
   const Tree& tree_;
   const WeightTerms& on_;
   Packet& packet_;
+  Sink& sink_;
   Terms terms_;
   Judge judge_;
-  WholeSums whole_;
   // The listed quads of the parent at hand. list() stores whole vectors, so there is room for one
   // more.
   std::int32_t quads_[(kQuadsInGroup + 1) * kWidth];

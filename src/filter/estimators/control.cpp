@@ -58,12 +58,11 @@ class Control {
   Estimates run() {
     const auto start = Clock::now();
     choose();
-    result_.c_bar.assign(r_.size(), Rgb(0, 0, 0));
-    result_.neighbors.assign(r_.size(), 0);
+    make_room();
     result_.statistics.seconds_index = seconds_since(start);
     if (k_ == 1) {
       for (const std::uint32_t i : roles_.queries) {
-        result_.c_bar[i] = r_.contribution[i];
+        for (const Part& part : parts_) (*part.c_bar)[i] = part.contribution[i];
         result_.neighbors[i] = 1;
       }
     } else if (k_ > 1) {
@@ -76,6 +75,23 @@ class Control {
   }
 
  private:
+  // What is estimated: c, and the contributions of the layers.
+  struct Part {
+    std::span<const Rgb> contribution;
+    std::vector<Rgb>* c_bar;  // in the result
+  };
+
+  void make_room() {
+    result_.neighbors.assign(r_.size(), 0);
+    result_.layers.resize(r_.layers.size());
+    parts_.push_back({r_.contribution, &result_.c_bar});
+    for (std::size_t k = 0; k < r_.layers.size(); ++k) {
+      const std::span<const Rgb> contribution = r_.layers[k].contribution;
+      if (!contribution.empty()) parts_.push_back({contribution, &result_.layers[k]});
+    }
+    for (const Part& part : parts_) part.c_bar->assign(r_.size(), Rgb(0, 0, 0));
+  }
+
   // Chooses the sources, and sets k_ to one over their probability, or leaves it where the block
   // has no shaded record.
   void choose() {
@@ -137,24 +153,34 @@ class Control {
     const double share = noise_share();
 
     const auto filter_start = Clock::now();
-    std::vector<Rgb> values(r_.contribution.begin(), r_.contribution.end());
-    if (p_.demodulate) values = demodulated(r_, roles);
-    std::vector<Rgb> means(r_.size()), moments(r_.size());
+    // The values of every part, and last the luminance of those of c and its square.
+    std::vector<std::vector<Rgb>> values, means;
+    for (const Part& part : parts_) {
+      values.push_back(p_.demodulate
+                           ? demodulated(part.contribution, r_, roles)
+                           : std::vector<Rgb>(part.contribution.begin(), part.contribution.end()));
+    }
+    values.emplace_back(r_.size(), Rgb(0, 0, 0));
+    for (const std::uint32_t j : roles.sources) {
+      const float y = luminance(values[0][j]);
+      values.back()[j] = Rgb(y, y * y, 0);
+    }
+    means.assign(values.size(), std::vector<Rgb>(r_.size()));
+    std::vector<Averaged> all;
+    for (std::size_t k = 0; k < values.size(); ++k) all.push_back({values[k], means[k]});
     std::vector<std::uint32_t> counts(r_.size());
     Statistics unused;  // the engine counts queries of `half` as well
-    engine->apply(values, false, means, counts, unused);
-    for (const std::uint32_t j : roles.sources) {
-      const float y = luminance(values[j]);
-      values[j] = Rgb(y, y * y, 0);
-    }
-    engine->apply(values, false, moments, counts, unused);
+    engine->apply(all, false, counts, unused);
     for (const std::uint32_t i : roles.queries) {
       if (half_of(r_, block_, i) == half) continue;
       const std::uint32_t count = counts[i] > 0 ? counts[i] : kOrphanSources;
-      const float beta = shrunk(share, double{moments[i].x}, double{moments[i].y}, count);
-      const Rgb g = p_.demodulate ? remodulate(means[i], r_.reflectance[i]) : means[i];
+      const Rgb& moments = means.back()[i];
+      const float beta = shrunk(share, double{moments.x}, double{moments.y}, count);
       result_.neighbors[i] = counts[i];
-      result_.c_bar[i] = g * beta;
+      for (std::size_t k = 0; k < parts_.size(); ++k) {
+        const Rgb g = p_.demodulate ? remodulate(means[k][i], r_.reflectance[i]) : means[k][i];
+        (*parts_[k].c_bar)[i] = g * beta;
+      }
     }
     result_.statistics.seconds_filter += seconds_since(filter_start);
   }
@@ -165,8 +191,10 @@ class Control {
     for (const std::uint32_t i : roles_.queries) {
       result_.statistics.orphans += result_.neighbors[i] == 0 ? 1u : 0u;
       if (roles_.of[i] != Role::source) continue;
-      const Rgb& g = result_.c_bar[i];
-      result_.c_bar[i] = g + (r_.contribution[i] - g) * k;
+      for (const Part& part : parts_) {
+        const Rgb g = (*part.c_bar)[i];
+        (*part.c_bar)[i] = g + (part.contribution[i] - g) * k;
+      }
     }
   }
 
@@ -175,6 +203,7 @@ class Control {
   const Block& block_;
   const Parameters& p_;
   Roles roles_;
+  std::vector<Part> parts_;
   std::uint64_t k_ = 0;
   Estimates result_;
 };

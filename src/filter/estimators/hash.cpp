@@ -34,19 +34,19 @@ class HashEngine final : public Engine {
     fill(grid_, 0);
   }
 
-  void apply(std::span<const Rgb> values, bool, std::span<Rgb> out,
-             std::span<std::uint32_t> neighbors, Statistics& statistics) override {
-    share(grid_, values, out, neighbors);
+  void apply(std::span<const Averaged> all, bool, std::span<std::uint32_t> neighbors,
+             Statistics& statistics) override {
+    share(grid_, all, neighbors);
     std::vector<std::uint32_t> orphans;
     for (const std::uint32_t i : alone_) {
       neighbors[i] = p_.roles.of[i] == Role::source ? 1 : 0;
-      out[i] = values[i];
+      for (const auto& [values, out] : all) out[i] = values[i];
     }
     for (const std::uint32_t i : p_.roles.queries) {
       statistics.add_query(neighbors[i]);
       if (neighbors[i] == 0) orphans.push_back(i);
     }
-    if (!orphans.empty()) adopt_all(std::move(orphans), values, out, statistics);
+    if (!orphans.empty()) adopt_all(std::move(orphans), all, statistics);
   }
 
  private:
@@ -66,31 +66,39 @@ class HashEngine final : public Engine {
 
   // out[i] and neighbors[i] of everyone in the grid; neighbors[i] is 0, and out[i] as it was, where
   // the cell has no source.
-  void share(const Grid& grid, std::span<const Rgb> values, std::span<Rgb> out,
+  void share(const Grid& grid, std::span<const Averaged> all,
              std::span<std::uint32_t> neighbors) const {
     core::parallel_for(grid.cells.count(), kCellGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t cell = begin; cell < end; ++cell) {
-        Sum sum;
-        std::uint32_t count = 0;
-        for (const std::uint32_t member : grid.cells[cell]) {
-          const std::uint32_t j = grid.records[member];
-          if (p_.roles.of[j] != Role::source) continue;
-          sum.add(values[j], 1);
-          ++count;
-        }
-        for (const std::uint32_t member : grid.cells[cell]) {
-          const std::uint32_t i = grid.records[member];
-          neighbors[i] = count;
-          if (count > 0) out[i] = sum.over(count);
-        }
+        for (const Averaged& one : all) share(grid, grid.cells[cell], one, neighbors);
       }
     });
   }
 
+  // The same of one cell and one value.
+  void share(const Grid& grid, std::span<const std::uint32_t> cell, const Averaged& one,
+             std::span<std::uint32_t> neighbors) const {
+    Sum sum;
+    std::uint32_t count = 0;
+    for (const std::uint32_t member : cell) {
+      const std::uint32_t j = grid.records[member];
+      if (p_.roles.of[j] != Role::source) continue;
+      sum.add(one.values[j], 1);
+      ++count;
+    }
+    for (const std::uint32_t member : cell) {
+      const std::uint32_t i = grid.records[member];
+      neighbors[i] = count;
+      if (count > 0) one.out[i] = sum.over(count);
+    }
+  }
+
   // Coarser cells first, then, for those who have nobody to pass the weights, the rule of balls.
-  void adopt_all(std::vector<std::uint32_t> orphans, std::span<const Rgb> values,
-                 std::span<Rgb> out, Statistics& statistics) const {
-    std::vector<Rgb> found(p_.records.size());
+  void adopt_all(std::vector<std::uint32_t> orphans, std::span<const Averaged> all,
+                 Statistics& statistics) const {
+    std::vector<std::vector<Rgb>> means(all.size(), std::vector<Rgb>(p_.records.size()));
+    std::vector<Averaged> found;
+    for (std::size_t k = 0; k < all.size(); ++k) found.push_back({all[k].values, means[k]});
     std::vector<std::uint32_t> counts(p_.records.size());
     for (int coarser = 1; coarser <= kCoarsest && !orphans.empty(); ++coarser) {
       Grid grid;
@@ -101,11 +109,11 @@ class HashEngine final : public Engine {
         if (has_cell(i)) grid.records.push_back(i);
       }
       fill(grid, coarser);
-      share(grid, values, found, counts);
+      share(grid, found, counts);
       std::vector<std::uint32_t> rest;
       for (const std::uint32_t i : orphans) {
         if (has_cell(i) && counts[i] > 0) {
-          out[i] = found[i];
+          for (std::size_t k = 0; k < all.size(); ++k) all[k].out[i] = means[k][i];
           ++statistics.orphans;
         } else {
           rest.push_back(i);
@@ -113,11 +121,11 @@ class HashEngine final : public Engine {
       }
       orphans = std::move(rest);
     }
-    adopt_nearest(orphans, values, out, statistics);
+    adopt_nearest(orphans, all, statistics);
   }
 
-  void adopt_nearest(std::span<const std::uint32_t> orphans, std::span<const Rgb> values,
-                     std::span<Rgb> out, Statistics& statistics) const {
+  void adopt_nearest(std::span<const std::uint32_t> orphans, std::span<const Averaged> all,
+                     Statistics& statistics) const {
     if (orphans.empty()) return;
     std::vector<Vec3> positions;
     for (const std::uint32_t j : p_.roles.sources) positions.push_back(p_.records.position[j]);
@@ -126,7 +134,7 @@ class HashEngine final : public Engine {
     core::parallel_for(orphans.size(), kCellGrain, [&](std::size_t begin, std::size_t end) {
       core::throw_if_interrupted("no picture was written");
       for (const std::uint32_t i : orphans.subspan(begin, end - begin)) {
-        out[i] = average_of(adopt(*search, p_, i), values, parts[begin / kCellGrain]);
+        average_adopted(adopt(*search, p_, i), i, all, parts[begin / kCellGrain]);
       }
     });
     for (const Statistics& part : parts) statistics += part;

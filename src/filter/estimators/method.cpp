@@ -14,17 +14,76 @@ constexpr std::size_t kQueriesARange = 4096;
 using core::Clock;
 using core::seconds_since;
 
-// Applies finished() to the average of every query.
-void finish(const MethodInput& input, const Roles& roles, std::span<const float> radius,
-            Estimates& result) {
-  const std::span<const std::uint32_t> queries = roles.queries;
-  core::parallel_for(queries.size(), kQueriesARange, [&](std::size_t begin, std::size_t end) {
-    for (const std::uint32_t i : queries.subspan(begin, end - begin)) {
-      result.c_bar[i] = finished(result.c_bar[i], result.neighbors[i], roles.of[i] == Role::source,
-                                 radius[i], input.records, i, input.parameters);
+// What is averaged of the records, and their averages: c, and the contributions of the layers.
+class Averages {
+ public:
+  // Takes room in `result`, which must outlive it.
+  Averages(const MethodInput& input, const Roles& roles, Estimates& result)
+      : input_(input), roles_(roles), result_(result) {
+    const Records& records = input.records;
+    result.neighbors.assign(records.size(), 0);
+    result.layers.resize(records.layers.size());
+    parts_.push_back({records.contribution, {}, &result.c_bar});
+    for (std::size_t k = 0; k < records.layers.size(); ++k) {
+      if (records.layers[k].contribution.empty()) continue;
+      parts_.push_back({records.layers[k].contribution, {}, &result.layers[k]});
     }
-  });
-}
+    for (const Part& part : parts_) part.c_bar->assign(records.size(), Rgb(0, 0, 0));
+  }
+
+  // Divides by rho where the parameters say so.
+  void demodulate() {
+    if (!input_.parameters.demodulate) return;
+    for (Part& part : parts_) part.given = demodulated(part.contribution, input_.records, roles_);
+  }
+  // The values that are averaged of c.
+  [[nodiscard]] std::span<const Rgb> values() const { return values(parts_[0]); }
+
+  void apply(Engine& engine, bool count_refusals, Statistics& statistics) {
+    std::vector<Averaged> all;
+    for (const Part& part : parts_) all.push_back({values(part), *part.c_bar});
+    engine.apply(all, count_refusals, result_.neighbors, statistics);
+  }
+  // Applies the engine to the averages.
+  void apply_again(Engine& engine) {
+    for (Part& part : parts_) {
+      std::swap(part.given, *part.c_bar);
+      part.c_bar->resize(input_.records.size(), Rgb(0, 0, 0));
+    }
+    Statistics repeated;  // the same neighbours: counted once
+    apply(engine, false, repeated);
+  }
+
+  // Applies finished() to the averages of every query.
+  void finish(std::span<const float> radius) {
+    const std::span<const std::uint32_t> queries = roles_.queries;
+    core::parallel_for(queries.size(), kQueriesARange, [&](std::size_t begin, std::size_t end) {
+      for (const std::uint32_t i : queries.subspan(begin, end - begin)) {
+        const bool is_source = roles_.of[i] == Role::source;
+        for (const Part& part : parts_) {
+          Rgb& c_bar = (*part.c_bar)[i];
+          c_bar = finished(c_bar, result_.neighbors[i], is_source, radius[i], part.contribution[i],
+                           input_.records, i, input_.parameters);
+        }
+      }
+    });
+  }
+
+ private:
+  struct Part {
+    std::span<const Rgb> contribution;
+    std::vector<Rgb> given;   // to the engine in place of `contribution`; empty: nothing was
+    std::vector<Rgb>* c_bar;  // in the result
+  };
+  static std::span<const Rgb> values(const Part& part) {
+    return part.given.empty() ? part.contribution : std::span<const Rgb>(part.given);
+  }
+
+  const MethodInput& input_;
+  const Roles& roles_;
+  Estimates& result_;
+  std::vector<Part> parts_;
+};
 
 }  // namespace
 
@@ -33,8 +92,7 @@ Estimates apply_engine(const MethodInput& input, const EngineSteps& steps) {
   Estimates result;
   const auto start = Clock::now();
   Roles roles = find_roles(records, block, parameters, result.statistics);
-  result.c_bar.assign(records.size(), Rgb(0, 0, 0));
-  result.neighbors.assign(records.size(), 0);
+  Averages averages(input, roles, result);
   if (roles.sources.empty()) {
     result.roles = std::move(roles.of);
     leave_out_queries(result.roles, result.statistics);
@@ -43,12 +101,11 @@ Estimates apply_engine(const MethodInput& input, const EngineSteps& steps) {
   std::vector<float> area;
   if (steps.areas != nullptr) area = steps.areas(records, roles, block);
   const Weights weights(records, terms_in_use(records, parameters.weights));
-  std::vector<Rgb> previous;
-  if (parameters.demodulate) previous = demodulated(records, roles);
-  const std::span<const Rgb> values = parameters.demodulate ? previous : records.contribution;
+  averages.demodulate();
   std::span<const float> radius = given;
   if (steps.radii != nullptr) {
-    result.radius = steps.radii({records, roles, given, weights, area}, values, parameters);
+    result.radius =
+        steps.radii({records, roles, given, weights, area}, averages.values(), parameters);
     radius = result.radius;
   }
   const Problem problem{records, roles, radius, weights, area};
@@ -56,15 +113,9 @@ Estimates apply_engine(const MethodInput& input, const EngineSteps& steps) {
   result.statistics.seconds_index = seconds_since(start);
 
   const auto filter_start = Clock::now();
-  engine->apply(values, parameters.count_refusals, result.c_bar, result.neighbors,
-                result.statistics);
-  for (std::uint32_t k = 1; k < parameters.iterations; ++k) {
-    std::swap(previous, result.c_bar);
-    result.c_bar.resize(records.size(), Rgb(0, 0, 0));
-    Statistics repeated;  // the same neighbours: counted once
-    engine->apply(previous, false, result.c_bar, result.neighbors, repeated);
-  }
-  finish(input, roles, radius, result);
+  averages.apply(*engine, parameters.count_refusals, result.statistics);
+  for (std::uint32_t k = 1; k < parameters.iterations; ++k) averages.apply_again(*engine);
+  averages.finish(radius);
   result.roles = std::move(roles.of);
   result.statistics.seconds_filter = seconds_since(filter_start);
   return result;

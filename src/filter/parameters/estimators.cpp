@@ -44,8 +44,8 @@ constexpr EstimatorInfo kEstimators[kEstimatorCount] = {
      .meaning = "halves as control variates, unbiased",
      .refusals = kControlRefusals,
      .is_of_ball = false,
-     // Values, means, moments, counts, and the roles of a half, whose tree is smaller.
-     .bytes = 3 * sizeof(Rgb) + 3 * sizeof(float) + 1},
+     // Values, moments, the means of both, counts, and the roles of a half, whose tree is smaller.
+     .bytes = 4 * sizeof(Rgb) + 3 * sizeof(float) + 1},
     {.name = "adaptive",
      .meaning = "balls whose contributions agree",
      .least_share = 1.0 / 16,

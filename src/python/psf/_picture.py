@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
@@ -62,6 +64,17 @@ class Picture:
         """The mean radius in world units, (height, width)."""
         return self["radius.Y"]
 
+    @property
+    def light_layers(self) -> list[str]:
+        """The names of the layers of the light, which add up to the colours; empty: none."""
+        return self._picture.light_layers
+
+    def relight(self, **weights: float | Sequence[float]) -> Picture:
+        """Each layer of the light that is named times its weight, a number or three, and the
+        colours their sum: what ``psf relight`` does. ``**{"key-light": 2}`` for other names."""
+        return Picture(self._picture.relight(
+            {layer: _weight(layer, weight) for layer, weight in weights.items()}))
+
     def error(self, reference: Picture | FileName, metric: str = "relMSE") -> float:
         """The error against a reference, a picture or an EXR file, by a metric of ``metrics()``."""
         return self._picture.error(as_picture("reference", reference)._picture, metric)
@@ -80,6 +93,16 @@ class Picture:
     def __repr__(self) -> str:
         name = f" of {self.camera}" if self.camera else ""
         return f"<psf.Picture{name}, {self.width} x {self.height}: {', '.join(self.layers)}>"
+
+
+def _weight(layer: str, value: float | Sequence[float]) -> tuple[float, float, float]:
+    if isinstance(value, Sequence) or isinstance(value, np.ndarray):
+        if len(value) != 3:
+            raise wrong(layer, "a number or three", value)
+        red, green, blue = (real(layer, one) for one in value)
+        return red, green, blue
+    grey = real(layer, value)
+    return grey, grey, grey
 
 
 def as_picture(name: str, value: Picture | FileName) -> Picture:

@@ -155,6 +155,13 @@ void add_output(std::vector<Option>& table) {
   channels.is_list = true;
   channels.separator = ',';
   table.push_back(std::move(channels));
+  table.push_back(choice(
+      "layers", kOutput, [](Job & j) -> auto& { return j.settings.integrator.layers; },
+      {{"none", LayerKind::none},
+       {"lights", LayerKind::lights},
+       {"bounces", LayerKind::bounces},
+       {"lobes", LayerKind::lobes}},
+      "also write the light by lights, by direct and indirect, or by diffuse and glossy"));
 }
 
 void add_sampling(std::vector<Option>& table) {

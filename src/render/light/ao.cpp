@@ -12,8 +12,9 @@ class AoIntegrator final : public Integrator {
   AoIntegrator(const Scene& scene, const IntegratorSettings& settings)
       : transport_(scene, settings) {}
 
-  PathRecord trace(const Ray& camera_ray, Sampler& sampler, bool shade,
-                   std::uint64_t& rays) const override;
+  PathRecord trace(const Ray& camera_ray, Sampler& sampler, bool shade, std::uint64_t& rays,
+                   const LayerSums& layers) const override;
+  const std::vector<LayerInfo>& layers() const override { return no_layers_; }
   std::vector<std::string> light_names() const override { return {}; }
 
  private:
@@ -21,10 +22,11 @@ class AoIntegrator final : public Integrator {
   float look(const Vertex& x, Sampler& sampler, std::uint64_t& rays) const;
 
   Transport transport_;
+  std::vector<LayerInfo> no_layers_;
 };
 
 PathRecord AoIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool shade,
-                               std::uint64_t& rays) const {
+                               std::uint64_t& rays, const LayerSums&) const {
   const IntegratorSettings& settings = transport_.settings();
   PathRecord record;
   Walk walk;

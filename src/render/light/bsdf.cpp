@@ -141,6 +141,18 @@ Rgb Bsdf::evaluate(const Vec3& o, const Vec3& i, float& pdf) const {
   return f;
 }
 
+Rgb Bsdf::diffuse_share(const Vec3& o, const Vec3& i) const {
+  if (lobes_ == kDiffuse) return {1, 1, 1};
+  if ((lobes_ & kDiffuse) == 0) return {0, 0, 0};
+  float pdf;
+  const Rgb all = evaluate(o, i, pdf), part = diffuse(o.z, i.z) * i.z;
+  Rgb share(0, 0, 0);
+  for (int c = 0; c < 3; ++c) {
+    if (all[c] > 0) share[c] = std::min(1.0f, part[c] / all[c]);
+  }
+  return share;
+}
+
 bool Bsdf::sample(const Vec3& o, const Vec2& u, float choice, BsdfSample& sample) const {
   if (o.z < kLeastCosine) return false;
   if (lobes_ == kGlass) return sample_glass(o, choice, sample);

@@ -68,6 +68,8 @@ class Bsdf {
 
   // Returns f cos, without perfect lobes, and sets `pdf` to the density of sample().
   [[nodiscard]] Rgb evaluate(const Vec3& o, const Vec3& i, float& pdf) const;
+  // The share of evaluate() that is the diffuse lobe's, by colour; 0 where that is 0.
+  [[nodiscard]] Rgb diffuse_share(const Vec3& o, const Vec3& i) const;
   // Samples a direction; returns false where the path is absorbed. `choice` selects a lobe, `u` a
   // direction in it.
   [[nodiscard]] bool sample(const Vec3& o, const Vec2& u, float choice, BsdfSample& sample) const;

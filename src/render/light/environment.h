@@ -19,7 +19,8 @@ class EnvironmentLight {
   explicit EnvironmentLight(const Scene& scene);
 
   [[nodiscard]] bool sampled() const { return map_ != nullptr; }
-  // Integral of luminance over the sphere of directions.
+  [[nodiscard]] bool black() const { return is_black(scale_); }
+  // Of a map: integral of luminance over the sphere of directions.
   [[nodiscard]] float power() const { return power_; }
   // The radiance that arrives from the sky in the unit `direction`, which points to the sky. The
   // map is interpolated bilinearly and does not wrap at the poles.

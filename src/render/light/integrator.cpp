@@ -28,6 +28,9 @@ std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Integrator
   if (settings.split < 1 || settings.max_depth < 1 || !(settings.ao_distance > 0)) {
     throw Error(ErrorCode::usage, "split, max depth and AO distance must be positive");
   }
+  if (settings.name == "ao" && settings.layers != LayerKind::none) {
+    throw Error(ErrorCode::usage, "`layers`: the integrator ao has no light to divide");
+  }
   if (settings.name == "path" || settings.name == "direct") {
     return make_path_integrator(scene, settings);
   }

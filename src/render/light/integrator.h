@@ -32,6 +32,7 @@
 #include <vector>
 
 #include "core/vec.h"
+#include "render/light/layers.h"
 #include "render/sample/sampler.h"
 #include "render/scene/scene.h"
 
@@ -74,15 +75,23 @@ struct IntegratorSettings {
   std::uint32_t split = 1;        // continuations from x_i, averaged into c_i
   // For ao, in world units: surfaces farther away than this do not occlude.
   float ao_distance = std::numeric_limits<float>::infinity();
+  LayerKind layers = LayerKind::none;  // layers of the light that a path is divided into; not of ao
 };
 
 class Integrator {
  public:
   virtual ~Integrator() = default;
   // Traces a path. Without `shade` it stops at x_i, and c_i is not computed. Adds the number of
-  // rays that it shot to `rays`. Thread-safe.
+  // rays that it shot to `rays`, and to each of `layers`, which are none or those of layers(),
+  // its parts of c_i and u_i. Thread-safe.
   [[nodiscard]] virtual PathRecord trace(const Ray& camera_ray, Sampler& sampler, bool shade,
-                                         std::uint64_t& rays) const = 0;
+                                         std::uint64_t& rays, const LayerSums& layers) const = 0;
+  [[nodiscard]] PathRecord trace(const Ray& camera_ray, Sampler& sampler, bool shade,
+                                 std::uint64_t& rays) const {
+    return trace(camera_ray, sampler, shade, rays, {});
+  }
+  // The layers of the light, as IntegratorSettings::layers asks for them.
+  [[nodiscard]] virtual const std::vector<LayerInfo>& layers() const = 0;
   // The names of the lights in the order of their numbers; light l has visibility bit l mod 32.
   [[nodiscard]] virtual std::vector<std::string> light_names() const = 0;
 };

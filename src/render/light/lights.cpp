@@ -162,18 +162,19 @@ Rgb Lights::emitted(const Arrival& arrival, const Surface& hit) const {
   return radiance(r, hit.uv) * weight(arrival, light, pdf);
 }
 
-Rgb Lights::escaped(const Arrival& arrival) const {
-  Rgb sum = sky_.radiance(arrival.direction);
+Rgb Lights::from_sky(const Arrival& arrival) const {
+  Rgb radiance = sky_.radiance(arrival.direction);
   if (sky_.sampled() && arrival.pdf > 0) {
-    sum *= weight(arrival, count(), sky_.pdf(arrival.direction));
+    radiance *= weight(arrival, count(), sky_.pdf(arrival.direction));
   }
-  for (const std::size_t s : suns_) {
-    const Record& r = lights_[s];
-    // 1 - cos of the angle between, without cancellation.
-    if (0.5f * length_sq(arrival.direction - r.direction) > r.extent) continue;
-    sum += r.radiance * weight(arrival, s, cone_pdf(r.extent));
-  }
-  return sum;
+  return radiance;
+}
+
+Rgb Lights::from_sun(const Arrival& arrival, std::size_t sun) const {
+  const Record& r = lights_[sun];
+  // 1 - cos of the angle between, without cancellation.
+  if (0.5f * length_sq(arrival.direction - r.direction) > r.extent) return {0, 0, 0};
+  return r.radiance * weight(arrival, sun, cone_pdf(r.extent));
 }
 
 }  // namespace psf::render

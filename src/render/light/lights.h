@@ -32,6 +32,7 @@ class Lights {
 
   [[nodiscard]] std::size_t count() const { return lights_.size(); }  // without the sky
   [[nodiscard]] bool sky_sampled() const { return sky_.sampled(); }
+  [[nodiscard]] bool has_sky() const { return !sky_.black(); }
   [[nodiscard]] std::vector<std::string> names() const;
 
   // Samples a point on light `light`, or the sky for count(), as seen from `from`. Returns false
@@ -55,8 +56,20 @@ class Lights {
   };
   // Radiance that `hit` emits toward the arrival's origin, weighted against light sampling.
   [[nodiscard]] Rgb emitted(const Arrival& arrival, const Surface& hit) const;
-  // Radiance that arrives from infinity, weighted against light sampling.
-  [[nodiscard]] Rgb escaped(const Arrival& arrival) const;
+  // Radiance that arrives from infinity, weighted against light sampling. Calls add(light, part)
+  // for the part of the sky, which is light count(), and of each sun that is met.
+  template <class Add>
+  [[nodiscard]] Rgb escaped(const Arrival& arrival, const Add& add) const {
+    Rgb sum = from_sky(arrival);
+    add(count(), sum);
+    for (const std::size_t sun : suns_) {
+      const Rgb part = from_sun(arrival, sun);
+      if (is_black(part)) continue;
+      sum += part;
+      add(sun, part);
+    }
+    return sum;
+  }
 
  private:
   enum class Kind : std::uint8_t { point, spot, directional, sun, mesh, sphere };
@@ -90,6 +103,8 @@ class Lights {
                                           const Vec2& u, LightSample& sample);
   [[nodiscard]] static float sphere_pdf(const Record& light, const Vec3& from, bool inside);
   [[nodiscard]] float weight(const Arrival& arrival, std::size_t light, float pdf) const;
+  [[nodiscard]] Rgb from_sky(const Arrival& arrival) const;
+  [[nodiscard]] Rgb from_sun(const Arrival& arrival, std::size_t sun) const;
 
   std::vector<Record> lights_;
   std::vector<std::string> names_;

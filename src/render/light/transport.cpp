@@ -43,35 +43,42 @@ Vertex Transport::vertex(const Surface& surface, const Vec3& direction) const {
           frame, -direction, frame.to_local(-direction)};
 }
 
-Rgb Transport::met(const Walk& walk, const Surface* surface) const {
+Rgb Transport::met(const Walk& walk, const Surface* surface, Tally& tally) const {
   if (surface != nullptr && surface->emitter == kNone) return {0, 0, 0};
   const Lights::Arrival arrival{walk.from, walk.ray.direction, walk.pdf, walk.every_light};
-  return walk.throughput *
-         (surface != nullptr ? lights_.emitted(arrival, *surface) : lights_.escaped(arrival));
+  if (surface == nullptr) {
+    return walk.throughput * lights_.escaped(arrival, [&](std::size_t light, const Rgb& part) {
+      tally.add(light, walk.throughput * part);
+    });
+  }
+  const Rgb radiance = walk.throughput * lights_.emitted(arrival, *surface);
+  tally.add(static_cast<std::size_t>(surface->emitter), radiance);
+  return radiance;
 }
 
 Rgb Transport::direct(const Vertex& v, bool every, Sampler& sampler, std::uint32_t& visibility,
-                      std::uint64_t& rays) const {
+                      std::uint64_t& rays, Tally& tally, const Rgb& throughput) const {
   if (v.bsdf.perfect()) return {0, 0, 0};
   if (!every) {
     if (lights_.choices() == 0) return {0, 0, 0};
     float probability;
     const std::size_t light = lights_.choose(sampler.next_1d(), probability);
-    return direct_from(light, probability, v, sampler, visibility, rays);
+    return direct_from(light, probability, v, sampler, visibility, rays, tally, throughput);
   }
   Rgb sum(0, 0, 0);
   for (std::size_t light = 0; light < lights_.count(); ++light) {
-    sum += direct_from(light, 1, v, sampler, visibility, rays);
+    sum += direct_from(light, 1, v, sampler, visibility, rays, tally, throughput);
   }
   if (lights_.sky_sampled()) {
     std::uint32_t no_bit = 0;
-    sum += direct_from(lights_.count(), 1, v, sampler, no_bit, rays);
+    sum += direct_from(lights_.count(), 1, v, sampler, no_bit, rays, tally, throughput);
   }
   return sum;
 }
 
 Rgb Transport::direct_from(std::size_t light, float probability, const Vertex& v, Sampler& sampler,
-                           std::uint32_t& visibility, std::uint64_t& rays) const {
+                           std::uint32_t& visibility, std::uint64_t& rays, Tally& tally,
+                           const Rgb& throughput) const {
   const Vec2 u = lights_.has_extent(light) ? sampler.next_2d() : Vec2(0, 0);
   LightSample sample;
   if (!lights_.sample(light, v.surface, u, sample)) return {0, 0, 0};
@@ -94,7 +101,10 @@ Rgb Transport::direct_from(std::size_t light, float probability, const Vertex& v
   const float weight = sample.pdf > 0
                            ? mis_weight(sample.pdf * probability, scatter_pdf) / probability
                            : 1 / probability;
-  return f * sample.weight * weight;
+  const Rgb radiance = f * sample.weight * weight;
+  if (tally.wants_diffuse()) tally.set_diffuse(v.bsdf.diffuse_share(v.local, local));
+  tally.add(light, throughput * radiance);
+  return radiance;
 }
 
 bool Transport::select_lobe(Vertex& v, Walk& walk, Sampler& sampler) const {

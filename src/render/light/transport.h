@@ -10,6 +10,7 @@
 #include "render/light/integrator.h"
 #include "render/light/lights.h"
 #include "render/light/surface.h"
+#include "render/light/tally.h"
 
 namespace psf::render {
 
@@ -51,14 +52,14 @@ class Transport {
   [[nodiscard]] Vertex vertex(const Surface& surface, const Vec3& direction) const;
 
   // The emitted light that the walk's ray met at `surface`, or in the sky where it is null, times
-  // the walk's throughput and weighted against light sampling.
-  [[nodiscard]] Rgb met(const Walk& walk, const Surface* surface) const;
+  // the walk's throughput and weighted against light sampling. Adds it to `tally`.
+  [[nodiscard]] Rgb met(const Walk& walk, const Surface* surface, Tally& tally) const;
 
   // The radiance that `v` scatters directly from the lights, weighted against scattering. With
   // `every` each light is sampled once, else one light chosen by power. Sets the visibility bit of
-  // each sampled light that `v` sees.
+  // each sampled light that `v` sees. Adds `throughput` times the radiance to `tally`.
   [[nodiscard]] Rgb direct(const Vertex& v, bool every, Sampler& sampler, std::uint32_t& visibility,
-                           std::uint64_t& rays) const;
+                           std::uint64_t& rays, Tally& tally, const Rgb& throughput) const;
 
   // Where only one of two lobes is rough enough, keeps one of them at random and divides the
   // throughput by its probability. Returns whether `v` is then rough enough to be x_i.
@@ -74,8 +75,8 @@ class Transport {
 
  private:
   [[nodiscard]] Rgb direct_from(std::size_t light, float probability, const Vertex& v,
-                                Sampler& sampler, std::uint32_t& visibility,
-                                std::uint64_t& rays) const;
+                                Sampler& sampler, std::uint32_t& visibility, std::uint64_t& rays,
+                                Tally& tally, const Rgb& throughput) const;
 
   const Scene& scene_;
   IntegratorSettings settings_;

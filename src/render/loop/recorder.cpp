@@ -17,6 +17,22 @@ const void* bytes(const std::vector<T>& values) {
   return values.data();
 }
 
+struct LayerChannel {
+  std::string name;
+  std::span<Rgb> LayerSums::*part;
+  std::size_t layer;
+};
+
+std::vector<LayerChannel> layer_channels(std::span<const LayerInfo> layers) {
+  std::vector<LayerChannel> channels;
+  for (std::size_t k = 0; k < layers.size(); ++k) {
+    const auto& [name, contribution, unfiltered] = layers[k];
+    if (contribution) channels.push_back({"contribution." + name, &LayerSums::contribution, k});
+    if (unfiltered) channels.push_back({"unfiltered." + name, &LayerSums::unfiltered, k});
+  }
+  return channels;
+}
+
 }  // namespace
 
 // One row a channel: the file's side and the recorder's.
@@ -50,7 +66,8 @@ struct ColumnTable {
   }
 };
 
-std::vector<formats::Channel> record_channels(std::span<const std::string> optional) {
+std::vector<formats::Channel> record_channels(std::span<const std::string> optional,
+                                              std::span<const LayerInfo> layers) {
   const auto& rows = ColumnTable::rows();
   for (const std::string& name : optional) {
     const auto is_named = [&](const auto& row) { return row.channel.name == name; };
@@ -68,10 +85,13 @@ std::vector<formats::Channel> record_channels(std::span<const std::string> optio
         std::find(optional.begin(), optional.end(), row.channel.name) != optional.end();
     if (row.always || optional.empty() || wanted) channels.push_back(row.channel);
   }
+  for (const LayerChannel& layer : layer_channels(layers)) {
+    channels.push_back({layer.name, formats::Type::f32, 3});
+  }
   return channels;
 }
 
-Recorder::Recorder(std::size_t capacity)
+Recorder::Recorder(std::size_t capacity, std::span<const LayerInfo> layers)
     : position_(capacity),
       normal_(capacity),
       direction_(capacity),
@@ -86,10 +106,14 @@ Recorder::Recorder(std::size_t capacity)
       visibility_(capacity),
       material_(capacity),
       camera_(capacity),
-      flags_(capacity) {}
+      flags_(capacity) {
+  for (const auto& [name, part, layer] : layer_channels(layers)) {
+    layers_.push_back({name, part, layer, std::vector<Rgb>(capacity)});
+  }
+}
 
 void Recorder::set(std::size_t slot, std::uint16_t camera, std::uint32_t pixel,
-                   const PathRecord& record) {
+                   const PathRecord& record, const LayerSums& sums) {
   position_[slot] = record.position;
   normal_[slot] = record.normal;
   direction_[slot] = record.direction;
@@ -106,6 +130,7 @@ void Recorder::set(std::size_t slot, std::uint16_t camera, std::uint32_t pixel,
   camera_[slot] = camera;
   flags_[slot] = static_cast<std::uint8_t>((record.has_vertex ? kHasVertexFlag : 0) |
                                            (record.shaded ? kShadedFlag : 0));
+  for (LayerColumn& column : layers_) column.values[slot] = (sums.*column.part)[column.layer];
 }
 
 std::vector<const void*> Recorder::columns(std::span<const formats::Channel> channels) const {
@@ -113,6 +138,9 @@ std::vector<const void*> Recorder::columns(std::span<const formats::Channel> cha
   for (const formats::Channel& channel : channels) {
     for (const auto& row : ColumnTable::rows()) {
       if (row.channel.name == channel.name) result.push_back(row.data(*this));
+    }
+    for (const LayerColumn& column : layers_) {
+      if (column.channel == channel.name) result.push_back(column.values.data());
     }
   }
   return result;

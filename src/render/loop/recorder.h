@@ -19,16 +19,20 @@ constexpr std::uint8_t kShadedFlag = 2;
 
 // The channels to write, in the format's order: those that the format requires; `flags` and
 // `unfiltered`, without which pictures cannot be made; and of the others those in `optional`, or
-// all where it is empty. Throws Error{usage} that names an unknown channel and the known ones.
+// all where it is empty; then those of the layers of the light. Throws Error{usage} that names an
+// unknown channel and the known ones.
 [[nodiscard]] std::vector<formats::Channel> record_channels(
-    std::span<const std::string> optional = {});
+    std::span<const std::string> optional = {}, std::span<const LayerInfo> layers = {});
 
 class Recorder {
  public:
-  explicit Recorder(std::size_t capacity);
+  // `layers`: those of the light that the records will have.
+  explicit Recorder(std::size_t capacity, std::span<const LayerInfo> layers = {});
 
   // Sets record `slot` < capacity. Different slots may be set from different threads at once.
-  void set(std::size_t slot, std::uint16_t camera, std::uint32_t pixel, const PathRecord& record);
+  // `sums`: as the layers are numbered.
+  void set(std::size_t slot, std::uint16_t camera, std::uint32_t pixel, const PathRecord& record,
+           const LayerSums& sums = {});
 
   // The address of the first value of each channel, for formats::Writer::append(). `channels` are
   // from record_channels(). Valid as long as the recorder exists.
@@ -52,6 +56,14 @@ class Recorder {
   std::vector<std::uint32_t> pixel_, visibility_, material_;
   std::vector<std::uint16_t> camera_;
   std::vector<std::uint8_t> flags_;
+  // A channel of a layer, and the layer's number.
+  struct LayerColumn {
+    std::string channel;
+    std::span<Rgb> LayerSums::*part;
+    std::size_t layer;
+    std::vector<Rgb> values;
+  };
+  std::vector<LayerColumn> layers_;
 };
 
 }  // namespace psf::render

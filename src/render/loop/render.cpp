@@ -37,6 +37,22 @@ struct View {
   [[nodiscard]] std::size_t pixels() const { return std::size_t{width} * height; }
 };
 
+// Room for the layers of one path.
+class LayerSpace {
+ public:
+  explicit LayerSpace(std::size_t layers)
+      : values_(2 * layers),
+        sums_{std::span(values_).first(layers), std::span(values_).last(layers)} {}
+  [[nodiscard]] const LayerSums& cleared() {
+    std::fill(values_.begin(), values_.end(), Rgb(0, 0, 0));
+    return sums_;
+  }
+
+ private:
+  std::vector<Rgb> values_;
+  LayerSums sums_;
+};
+
 class Loop {
  public:
   Loop(const Scene& scene, const Integrator& integrator, const RenderSettings& settings,
@@ -46,7 +62,7 @@ class Loop {
         settings_(settings),
         writer_(writer),
         shade_rate_(settings.shade_rate),
-        channels_(record_channels(settings.channels)) {
+        channels_(record_channels(settings.channels, integrator.layers())) {
     result_.films.reserve(settings.cameras.size());
     std::size_t largest = 0;
     for (const std::size_t index : settings.cameras) {
@@ -56,7 +72,8 @@ class Loop {
       largest = std::max(largest, views_.back().pixels());
       result_.films.emplace_back(camera.width, camera.height);
     }
-    for (auto& slab : slabs_) slab = std::make_unique<Recorder>(std::min(kSlab, largest));
+    for (auto& slab : slabs_)
+      slab = std::make_unique<Recorder>(std::min(kSlab, largest), integrator.layers());
   }
 
   // Takes up what a resumed file holds.
@@ -68,7 +85,7 @@ class Loop {
   void trace_pass(std::uint64_t pass);
   void trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t first, std::size_t count);
   void trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path, Recorder& recorder,
-                  std::size_t slot, std::uint64_t& rays) const;
+                  std::size_t slot, LayerSpace& layers, std::uint64_t& rays) const;
   void emit(std::uint64_t pass, std::uint16_t camera, std::size_t count);
   void wait_for_output();
   [[nodiscard]] Done done_now() const;
@@ -165,8 +182,9 @@ void Loop::trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t firs
     const std::size_t size = std::min(step, count - begin);
     core::parallel_for(size, kGrain, [&](std::size_t from, std::size_t to) {
       std::uint64_t rays = 0;
+      LayerSpace layers(integrator_.layers().size());
       for (std::size_t i = begin + from; i < begin + to; ++i) {
-        trace_path(pass, camera, first + i, recorder, i, rays);
+        trace_path(pass, camera, first + i, recorder, i, layers, rays);
       }
       rays_ += rays;
     });
@@ -183,7 +201,8 @@ void Loop::trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t firs
 }
 
 void Loop::trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path,
-                      Recorder& recorder, std::size_t slot, std::uint64_t& rays) const {
+                      Recorder& recorder, std::size_t slot, LayerSpace& layers,
+                      std::uint64_t& rays) const {
   const View& view = views_[camera];
   const bool global = settings_.sampler.enumeration == Enumeration::global;
   const std::uint64_t in_pass = view.first + path;
@@ -203,10 +222,11 @@ void Loop::trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path
   }
   const Vec2 lens = view.rays.has_lens() ? sampler.next_2d() : Vec2(0, 0);
   const bool shade = shade_rate_.shaded(x, y, pass);
-  PathRecord record = integrator_.trace(view.rays.ray(position, lens), sampler, shade, rays);
+  const LayerSums& sums = layers.cleared();
+  PathRecord record = integrator_.trace(view.rays.ray(position, lens), sampler, shade, rays, sums);
   // Without a vertex it is not shaded either way; the flag says that it counts.
   if (!record.has_vertex && settings_.shade_rate > 1) record.shaded = shade;
-  recorder.set(slot, camera, y * view.width + x, in_world(record, space_));
+  recorder.set(slot, camera, y * view.width + x, in_world(record, space_), sums);
 }
 
 void Loop::emit(std::uint64_t pass, std::uint16_t camera, std::size_t count) {

@@ -69,7 +69,7 @@ formats::Head make_head(const Scene& scene, const Integrator& integrator,
   for (const Material& material : scene.materials) metadata.materials.push_back(material.name);
 
   formats::Head head;
-  head.channels = record_channels(settings.channels);
+  head.channels = record_channels(settings.channels, integrator.layers());
   head.metadata = formats::to_json(metadata);
   // Names are a help and no reason to refuse a scene of very many materials.
   while (head.metadata.size() > formats::kMaxMetadata && !metadata.materials.empty()) {

@@ -1,0 +1,104 @@
+#include "film/relight.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+
+namespace psf::film {
+namespace {
+
+constexpr const char* kRelight = "psf:relight";
+constexpr const char* kUnfiltered = "unfiltered-input.";
+constexpr const char* kColours = "RGB";
+
+std::vector<float>& channel_of(Image& image, const std::string& name) {
+  const auto found = std::find_if(image.layers.begin(), image.layers.end(),
+                                  [&](const Layer& layer) { return layer.channel == name; });
+  if (found == image.layers.end()) {
+    throw Error(ErrorCode::bad_input, fmt::format("{}: has no channel {}, though {} names it",
+                                                  image.path, name, kLightLayers));
+  }
+  return found->values;
+}
+
+// Multiplies the layers behind `prefix`, and sets its colours to their sum.
+void weigh(Image& image, const std::string& prefix, const std::vector<std::string>& layers,
+           const LightWeights& weights) {
+  std::vector<double> sum(image.width * image.height);
+  for (int c = 0; c < 3; ++c) {
+    std::fill(sum.begin(), sum.end(), 0.0);
+    for (const std::string& layer : layers) {
+      const auto given = weights.find(layer);
+      const float weight = given == weights.end() ? 1 : given->second[c];
+      std::vector<float>& values = channel_of(image, prefix + layer + "." + kColours[c]);
+      for (std::size_t pixel = 0; pixel < sum.size(); ++pixel) {
+        values[pixel] *= weight;
+        sum[pixel] += double{values[pixel]};
+      }
+    }
+    std::vector<float>& all = channel_of(image, prefix + kColours[c]);
+    std::transform(sum.begin(), sum.end(), all.begin(),
+                   [](double value) { return static_cast<float>(value); });
+  }
+}
+
+std::string text_of(const LightWeights& weights) {
+  std::vector<std::string> texts;
+  for (const auto& [layer, weight] : weights) {
+    texts.push_back(weight.x == weight.y && weight.y == weight.z
+                        ? fmt::format("{}={}", layer, weight.x)
+                        : fmt::format("{}={},{},{}", layer, weight.x, weight.y, weight.z));
+  }
+  return fmt::format("{}", fmt::join(texts, " "));
+}
+
+}  // namespace
+
+std::vector<std::string> light_layers_of(const Image& image) {
+  std::vector<std::string> names;
+  for (const auto& [name, text] : image.attributes) {
+    if (name != kLightLayers) continue;
+    for (std::size_t begin = 0; begin < text.size();) {
+      const std::size_t comma = std::min(text.find(',', begin), text.size());
+      names.push_back(text.substr(begin, comma - begin));
+      begin = comma + 1;
+    }
+  }
+  return names;
+}
+
+Image relight(const Image& image, const LightWeights& weights) {
+  const std::vector<std::string> layers = light_layers_of(image);
+  if (layers.empty()) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: has no layers of the light; psf-render --layers lights writes "
+                            "them into a dump, and psf filter into the picture",
+                            image.path));
+  }
+  for (const auto& [layer, weight] : weights) {
+    if (std::find(layers.begin(), layers.end(), layer) != layers.end()) continue;
+    throw Error(ErrorCode::usage, fmt::format("{}: has no layer {} of the light; there are {}",
+                                              image.path, layer, fmt::join(layers, ", ")));
+  }
+  Image result = image;
+  weigh(result, "", layers, weights);
+  const std::string unfiltered = kUnfiltered;
+  if (result.find(unfiltered + layers.front() + ".R") != nullptr) {
+    weigh(result, unfiltered, layers, weights);
+  }
+  const auto before =
+      std::find_if(result.attributes.begin(), result.attributes.end(),
+                   [](const auto& attribute) { return attribute.first == kRelight; });
+  if (before == result.attributes.end()) {
+    result.attributes.emplace_back(kRelight, text_of(weights));
+  } else {
+    before->second += "; " + text_of(weights);
+  }
+  std::sort(result.attributes.begin(), result.attributes.end());  // as they come out of a file
+  return result;
+}
+
+}  // namespace psf::film
