@@ -77,8 +77,11 @@ void refuse_layout(const std::string& name, const OIIO::ImageSpec& spec) {
   if (format.find("CubeFace") != std::string::npos) {
     fail("is a cube map (OpenEXR's envmap says so); make it a latitude-longitude picture");
   }
-  if (find_channel(spec, "RY") && find_channel(spec, "BY"))
+  // OpenImageIO 2.5 names the channels R, G, B, and reads them only where they are subsampled.
+  if ((find_channel(spec, "RY") && find_channel(spec, "BY")) ||
+      spec.get_int_attribute("openexr:luminancechroma") != 0) {
     fail("has luminance and chroma (Y, RY, BY) for colours; make it RGB");
+  }
 }
 
 ColourChannels colour_channels(const std::string& name, const OIIO::ImageSpec& spec, TextureUse use,
