@@ -39,7 +39,7 @@ struct Squares {
 }  // namespace
 
 std::vector<float> Film::mean() const {
-  std::vector<float> result(sum_.size(), 0.0f);
+  std::vector<float> result(3 * count_.size(), 0.0f);
   core::parallel_for(count_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
       if (has_path(pixel)) set_mean(&sum_[3 * pixel], count_[pixel], &result[3 * pixel]);
@@ -50,8 +50,9 @@ std::vector<float> Film::mean() const {
 
 std::vector<float> Film::mean(std::size_t component) const {
   std::vector<float> result(count_.size());
+  const double* sum = &sum_[component / 3 * 3 * count_.size() + component % 3];
   for (std::size_t pixel = 0; pixel < count_.size(); ++pixel) {
-    if (has_path(pixel)) result[pixel] = mean_of(sum_[3 * pixel + component], count_[pixel]);
+    if (has_path(pixel)) result[pixel] = mean_of(sum[3 * pixel], count_[pixel]);
   }
   return result;
 }
@@ -60,14 +61,19 @@ bool Film::has_path_everywhere() const {
   return std::find(count_.begin(), count_.end(), 0) == count_.end();
 }
 
-std::vector<float> Film::filled_mean() const {
-  std::vector<float> result = mean();
+std::vector<float> Film::filled_mean(std::size_t part) const {
+  std::vector<float> result(3 * count_.size(), 0.0f);
+  const auto first = sum_.begin() + static_cast<std::ptrdiff_t>(3 * part * count_.size());
+  const auto end = first + static_cast<std::ptrdiff_t>(3 * count_.size());
+  Squares squares{width_, height_, std::vector<double>(first, end), count_};
   std::vector<std::size_t> holes;
   for (std::size_t pixel = 0; pixel < count_.size(); ++pixel) {
-    if (!has_path(pixel)) holes.push_back(pixel);
+    if (has_path(pixel)) {
+      set_mean(&squares.sum[3 * pixel], count_[pixel], &result[3 * pixel]);
+    } else {
+      holes.push_back(pixel);
+    }
   }
-  if (holes.empty()) return result;
-  Squares squares{width_, height_, sum_, count_};
   for (std::size_t side = 2; !holes.empty() && squares.count.size() > 1; side *= 2) {
     squares = squares.twice_as_wide();
     std::erase_if(holes, [&](std::size_t pixel) {

@@ -91,10 +91,15 @@ class Classifier {
   // of[i] for records [begin, end), and what is counted of them.
   void classify(std::size_t begin, std::size_t end, std::span<Role> of,
                 Statistics& statistics) const {
+    const std::vector<std::uint32_t> of_layers = bad_layers(begin, end);
     for (std::size_t i = begin; i < end; ++i) {
       const bool vertex = (r_.flags[i] & kHasVertex) != 0;
       const bool source = vertex && is_source(i);
-      const std::uint32_t bits = bad_channels(i, vertex, source);
+      std::uint32_t bits = bad_channels(i, vertex, source);
+      if (!of_layers.empty()) {
+        const std::uint32_t of_sources = 1u << kContribution | 1u << kReflectance;
+        bits |= of_layers[i - begin] & (source ? ~0u : ~of_sources);
+      }
       of[i] = bits != 0     ? Role::left_out
               : source      ? Role::source
               : vertex      ? Role::query
@@ -140,6 +145,25 @@ class Classifier {
     for (std::size_t k = 0; k < kCheckedChannels; ++k) statistics.non_finite[k] += (bits >> k) & 1;
   }
 
+  // What bad_channels() would say of the layers of records [begin, end), were all of them sources; none
+  // where there are no layers. Layer after layer, as columns are fastest read.
+  [[nodiscard]] std::vector<std::uint32_t> bad_layers(std::size_t begin, std::size_t end) const {
+    std::vector<std::uint32_t> bad(r_.layers.empty() ? 0 : end - begin, 0);
+    for (const auto& [contribution, unfiltered] : r_.layers) {
+      for (std::size_t i = begin; i < end && !unfiltered.empty(); ++i) {
+        bad[i - begin] |= std::uint32_t{!all_finite(unfiltered[i])} << kUnfiltered;
+      }
+      for (std::size_t i = begin; i < end && !contribution.empty(); ++i) {
+        const Rgb& c = contribution[i];
+        bad[i - begin] |= std::uint32_t{!all_finite(c)} << kContribution;
+        if (!demodulate_) continue;
+        bad[i - begin] |= std::uint32_t{!all_finite(demodulate(c, r_.reflectance[i]))}
+                          << kReflectance;
+      }
+    }
+    return bad;
+  }
+
   // Bit k set: the value of channel k of kCheckedNames is in use and not finite.
   [[nodiscard]] std::uint32_t bad_channels(std::size_t i, bool vertex, bool source) const {
     std::uint32_t bad = 0;
@@ -147,9 +171,6 @@ class Classifier {
       bad |= std::uint32_t{!good} << channel;
     };
     check(r_.unfiltered.empty() || all_finite(r_.unfiltered[i]), kUnfiltered);
-    for (const Layer& layer : r_.layers) {
-      check(layer.unfiltered.empty() || all_finite(layer.unfiltered[i]), kUnfiltered);
-    }
     if (shaded_alone_) {
       check(vertex ? (r_.flags[i] & kShaded) != 0 : would_be_shaded(i), kHitDistance);
     }
@@ -158,10 +179,6 @@ class Classifier {
     check(all_finite(r_.position[i]), kPosition);
     check(!distance_ || std::isfinite(r_.distance[i]), kDistance);
     check(!source || all_finite(r_.contribution[i]), kContribution);
-    for (const Layer& layer : r_.layers) {
-      check(!source || layer.contribution.empty() || all_finite(layer.contribution[i]),
-            kContribution);
-    }
     check(!normal_ || all_finite(r_.normal[i]), kNormal);
     check(!reflectance_ || all_finite(r_.reflectance[i]), kReflectance);
     check(!hit_distance_ || r_.hit_distance[i] >= std::numeric_limits<float>::lowest(),
@@ -169,12 +186,7 @@ class Classifier {
     check(!direction_ || all_finite(r_.direction[i]), kDirection);
     check(!roughness_ || std::isfinite(r_.roughness[i]), kRoughness);
     if (demodulate_ && source && bad == 0) {
-      const Rgb& rho = r_.reflectance[i];
-      check(all_finite(demodulate(r_.contribution[i], rho)), kReflectance);
-      for (const Layer& layer : r_.layers) {
-        check(layer.contribution.empty() || all_finite(demodulate(layer.contribution[i], rho)),
-              kReflectance);
-      }
+      check(all_finite(demodulate(r_.contribution[i], r_.reflectance[i])), kReflectance);
     }
     return bad;
   }

@@ -82,12 +82,14 @@ NoiseShare NoiseMoments::share(double epsilon) const {
 
 void add_noise(const filter::Records& records, std::span<const filter::Role> roles,
                std::size_t first, std::size_t last, std::span<NoiseMoments> moments) {
-  for_each_by_pixel(records, first, last, [&](std::size_t, std::size_t i) {
-    if (!filter::is_input(roles[i])) return;
-    const bool source = roles[i] == filter::Role::source;
-    const Rgb u = records.unfiltered.empty() ? Rgb(0, 0, 0) : records.unfiltered[i];
-    const Rgb s = source ? records.throughput[i] * records.contribution[i] : Rgb(0, 0, 0);
-    moments[records.camera.empty() ? 0 : records.camera[i]].add(records.pixel[i], u, s);
+  for_each_by_pixel(records, first, last, [&](std::size_t, std::span<const std::size_t> some) {
+    for (const std::size_t i : some) {
+      if (!filter::is_input(roles[i])) continue;
+      const bool source = roles[i] == filter::Role::source;
+      const Rgb u = records.unfiltered.empty() ? Rgb(0, 0, 0) : records.unfiltered[i];
+      const Rgb s = source ? records.throughput[i] * records.contribution[i] : Rgb(0, 0, 0);
+      moments[records.camera.empty() ? 0 : records.camera[i]].add(records.pixel[i], u, s);
+    }
   });
 }
 

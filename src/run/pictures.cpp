@@ -1,7 +1,6 @@
 #include "run/pictures.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "core/parallel.h"
 #include "film/relight.h"
@@ -11,65 +10,97 @@
 namespace psf::run {
 namespace {
 
-// Value i of a column that may be missing.
-Rgb value_of(std::span<const Rgb> column, std::size_t i) {
-  return column.empty() ? Rgb(0, 0, 0) : column[i];
+using filter::Estimates;
+using filter::Records;
+using filter::Role;
+
+// Of the light, or of a layer of it.
+struct Part {
+  std::span<const Rgb> u, c, c_bar;  // of the records; empty: 0
+};
+
+Part whole_of(const Records& records, const Estimates& estimates) {
+  return {records.unfiltered, records.contribution, estimates.c_bar};
+}
+Part layer_of(const Records& records, const Estimates& estimates, std::size_t k) {
+  const filter::Layer& layer = records.layers[k];
+  return {layer.unfiltered, layer.contribution, estimates.layers[k]};
+}
+
+// What a path adds to the filtered picture, and to the picture without filter.
+struct Radiance {
+  Rgb filtered, input;
+  [[nodiscard]] bool finite() const { return is_finite(filtered) && is_finite(input); }
+};
+
+Radiance radiance_of(const Part& part, const Rgb& alpha, Role role, std::size_t i) {
+  const auto value = [i](std::span<const Rgb> column) {
+    return column.empty() ? Rgb(0, 0, 0) : column[i];
+  };
+  const Rgb u = value(part.u);
+  if (!filter::is_query(role)) return {u, u};
+  const Rgb filtered = path_radiance(u, alpha, value(part.c_bar));
+  if (role != Role::source) return {filtered, filtered};
+  return {filtered, path_radiance(u, alpha, value(part.c))};
+}
+
+// Appends to `kept` those of `some` records that are in the pictures: not left out, and finite in
+// every part, so that the layers add up. Returns how many overflow. Part after part: a path's parts
+// lie in as many columns, which are fastest read one at a time.
+std::uint64_t keep(const Records& records, const Estimates& estimates,
+                   std::span<const std::size_t> some, std::vector<std::size_t>& kept) {
+  kept.clear();
+  for (const std::size_t i : some) {
+    if (estimates.roles[i] != Role::left_out) kept.push_back(i);
+  }
+  const std::size_t before = kept.size();
+  const auto keep_finite = [&](const Part& part) {
+    std::erase_if(kept, [&](std::size_t i) {
+      return !radiance_of(part, records.throughput[i], estimates.roles[i], i).finite();
+    });
+  };
+  keep_finite(whole_of(records, estimates));
+  for (std::size_t k = 0; k < records.layers.size(); ++k) {
+    keep_finite(layer_of(records, estimates, k));
+  }
+  return before - kept.size();
 }
 
 }  // namespace
 
 CameraPictures::CameraPictures(const filter::CameraView& camera, const PictureLayers& layers)
-    : details_(camera.width, camera.height),
+    : layer_names_(layers.light.value_or(std::vector<std::string>())),
+      filtered_(camera.width, camera.height, 1 + layer_names_.size()),
+      unfiltered_(camera.width, camera.height, 1 + layer_names_.size()),
+      details_(camera.width, camera.height),
       layers_(layers),
       albedo_(layers.albedo ? camera.width : 0, layers.albedo ? camera.height : 0),
-      normal_(layers.normal ? camera.width : 0, layers.normal ? camera.height : 0) {
-  const film::Film empty(camera.width, camera.height);
-  light_.push_back({"", empty, empty});
-  if (!layers.light) return;
-  for (const std::string& name : *layers.light) light_.push_back({name, empty, empty});
-}
+      normal_(layers.normal ? camera.width : 0, layers.normal ? camera.height : 0) {}
 
-bool CameraPictures::add(const filter::Records& records, const filter::Estimates& estimates,
+void CameraPictures::add(const Records& records, const Estimates& estimates,
                          std::span<const float> radius, std::size_t i) {
-  const filter::Role role = estimates.roles[i];
-  if (role == filter::Role::left_out) return true;
-  const auto radiance_of = [&](const Rgb& u, std::span<const Rgb> c,
-                               std::span<const Rgb> c_bar) -> Radiance {
-    if (!filter::is_query(role)) return {u, u};
-    const Rgb& alpha = records.throughput[i];
-    const Rgb filtered = path_radiance(u, alpha, value_of(c_bar, i));
-    if (role != filter::Role::source) return {filtered, filtered};
-    return {filtered, path_radiance(u, alpha, value_of(c, i))};
-  };
-  const auto of_layer = [&](std::size_t k) {
-    const filter::Layer& layer = records.layers[k];
-    return radiance_of(value_of(layer.unfiltered, i), layer.contribution, estimates.layers[k]);
-  };
-  const Radiance all =
-      radiance_of(unfiltered_of(records, i), records.contribution, estimates.c_bar);
-  bool finite = is_finite(all.filtered) && is_finite(all.input);
-  for (std::size_t k = 0; k + 1 < light_.size(); ++k) {
-    const Radiance layer = of_layer(k);
-    finite = finite && is_finite(layer.filtered) && is_finite(layer.input);
-  }
-  if (!finite) return false;  // in every layer or in none, so that they add up
-
+  const Role role = estimates.roles[i];
   const std::uint32_t pixel = records.pixel[i];
-  add(light_[0], pixel, role, all);
-  for (std::size_t k = 0; k + 1 < light_.size(); ++k) add(light_[k + 1], pixel, role, of_layer(k));
+  const Radiance radiance =
+      radiance_of(whole_of(records, estimates), records.throughput[i], role, i);
+  filtered_.add(pixel, radiance.filtered);
+  if (filter::is_input(role)) unfiltered_.add(pixel, radiance.input);
   const bool vertex = filter::is_query(role);
   if (vertex) {
     const float r_i = estimates.radius.empty() ? radius[i] : estimates.radius[i];
     details_.add(pixel, Rgb(static_cast<float>(estimates.neighbors[i]), r_i, 0));
   }
   add_guides(records, i, vertex);
-  return true;
 }
 
-void CameraPictures::add(Light& light, std::uint32_t pixel, filter::Role role,
-                         const Radiance& radiance) {
-  light.filtered.add(pixel, radiance.filtered);
-  if (filter::is_input(role)) light.unfiltered.add(pixel, radiance.input);
+void CameraPictures::add_layer(std::size_t k, const Records& records, const Estimates& estimates,
+                               std::size_t i) {
+  const Role role = estimates.roles[i];
+  const std::uint32_t pixel = records.pixel[i];
+  const Radiance radiance =
+      radiance_of(layer_of(records, estimates, k), records.throughput[i], role, i);
+  filtered_.add_part(k + 1, pixel, radiance.filtered);
+  if (filter::is_input(role)) unfiltered_.add_part(k + 1, pixel, radiance.input);
 }
 
 void CameraPictures::add_guides(const filter::Records& records, std::size_t i, bool vertex) {
@@ -83,10 +114,10 @@ void CameraPictures::add_guides(const filter::Records& records, std::size_t i, b
   }
 }
 
-std::vector<float> CameraPictures::filled(const film::Film& unfiltered) const {
-  std::vector<float> values = unfiltered.filled_mean();
+std::vector<float> CameraPictures::filled(std::size_t part) const {
+  std::vector<float> values = unfiltered_.filled_mean(part);
   for (std::size_t pixel = 0; pixel < values.size() / 3; ++pixel) {
-    if (!light_[0].filtered.has_path(pixel)) std::fill_n(&values[3 * pixel], 3, 0.0f);
+    if (!filtered_.has_path(pixel)) std::fill_n(&values[3 * pixel], 3, 0.0f);
   }
   return values;
 }
@@ -96,8 +127,10 @@ film::Image CameraPictures::image() const {
   image.width = details_.width();
   image.height = details_.height();
   std::string names;
-  for (const Light& light : light_) {
-    if (!light.name.empty()) names += (names.empty() ? "" : ",") + light.name;
+  std::vector<std::string> prefixes = {""};  // by part
+  for (const std::string& name : layer_names_) {
+    names += (names.empty() ? "" : ",") + name;
+    prefixes.push_back(name + ".");
   }
   if (!names.empty()) image.attributes.emplace_back(film::kLightLayers, names);
   struct Plane {
@@ -113,11 +146,12 @@ film::Image CameraPictures::image() const {
     }
   };
   // Where a pixel has no path of its own, filled() takes those around.
-  const bool has_holes = layers_.unfiltered && !light_[0].unfiltered.has_path_everywhere();
-  for (const auto& [name, filtered, unfiltered] : light_) {
-    const std::string prefix = name.empty() ? "" : name + ".";
-    add(prefix, "RGB", filtered);
-    if (layers_.unfiltered && !has_holes) add("unfiltered-input." + prefix, "RGB", unfiltered);
+  const bool has_holes = layers_.unfiltered && !unfiltered_.has_path_everywhere();
+  for (std::size_t part = 0; part < prefixes.size(); ++part) {
+    add(prefixes[part], "RGB", filtered_, 3 * part);
+    if (layers_.unfiltered && !has_holes) {
+      add("unfiltered-input." + prefixes[part], "RGB", unfiltered_, 3 * part);
+    }
   }
   if (layers_.neighbors) add("neighbors.", "Y", details_, 0);
   if (layers_.radius) add("radius.", "Y", details_, 1);
@@ -128,22 +162,35 @@ film::Image CameraPictures::image() const {
     image.layers[k] = {planes[k].channel, planes[k].film->mean(planes[k].component)};
   });
   if (has_holes) {
-    for (const auto& [name, filtered, unfiltered] : light_) {
-      image.add("unfiltered-input." + (name.empty() ? "" : name + "."), "RGB", filled(unfiltered));
+    for (std::size_t part = 0; part < prefixes.size(); ++part) {
+      image.add("unfiltered-input." + prefixes[part], "RGB", filled(part));
     }
   }
   return image;
 }
 
-std::uint64_t add_records(const filter::Records& records, const filter::Estimates& estimates,
+std::uint64_t add_records(const Records& records, const Estimates& estimates,
                           std::span<const float> radius, std::size_t first, std::size_t last,
                           std::span<CameraPictures> pictures) {
-  std::vector<std::uint64_t> overflows(pixel_bands(), 0);
-  for_each_by_pixel(records, first, last, [&](std::size_t band, std::size_t i) {
-    const std::size_t camera = records.camera.empty() ? 0 : records.camera[i];
-    if (!pictures[camera].add(records, estimates, radius, i)) ++overflows[band];
+  struct Band {
+    std::vector<std::size_t> kept;
+    std::uint64_t overflows = 0;
+  };
+  std::vector<Band> bands(pixel_bands());
+  const auto picture_of = [&](std::size_t i) -> CameraPictures& {
+    return pictures[records.camera.empty() ? 0 : records.camera[i]];
+  };
+  for_each_by_pixel(records, first, last, [&](std::size_t b, std::span<const std::size_t> some) {
+    Band& band = bands[b];
+    band.overflows += keep(records, estimates, some, band.kept);
+    for (const std::size_t i : band.kept) picture_of(i).add(records, estimates, radius, i);
+    for (std::size_t k = 0; k < records.layers.size(); ++k) {
+      for (const std::size_t i : band.kept) picture_of(i).add_layer(k, records, estimates, i);
+    }
   });
-  return std::accumulate(overflows.begin(), overflows.end(), std::uint64_t{0});
+  std::uint64_t overflows = 0;
+  for (const Band& band : bands) overflows += band.overflows;
+  return overflows;
 }
 
 }  // namespace psf::run

@@ -33,10 +33,13 @@ class CameraPictures {
   // `layers.light`: the names of the layers that the records will have, in their order.
   CameraPictures(const filter::CameraView& camera, const PictureLayers& layers);
 
-  // Adds record i of a filtered block [pixel]. Add the records of a pixel in path order, from one
-  // thread. Returns false where the radiance overflows; then the path is left out.
-  bool add(const filter::Records& records, const filter::Estimates& estimates,
+  // Adds record i of a filtered block [pixel], without its layers of the light. Add the records of a
+  // pixel in path order, from one thread, which are all finite.
+  void add(const filter::Records& records, const filter::Estimates& estimates,
            std::span<const float> radius, std::size_t i);
+  // Adds what layer k of the records has of record i.
+  void add_layer(std::size_t k, const filter::Records& records, const filter::Estimates& estimates,
+                 std::size_t i);
 
   // The picture with R, G, B, filtered, and those of these layers that were asked for:
   // unfiltered-input.R/G/B, over the paths for which is_input() is true, filled as in
@@ -51,26 +54,16 @@ class CameraPictures {
   static constexpr std::uint64_t kBytesOfFilm = 3 * sizeof(double) + sizeof(std::uint64_t);
   static constexpr std::uint64_t kBytesOfSums = 5 * kBytesOfFilm;
   static constexpr std::uint64_t kBytesToWrite = sizeof(float) * 2 * 14;
-  static constexpr std::uint64_t kBytesOfSumsALayer = 2 * kBytesOfFilm;
+  static constexpr std::uint64_t kBytesOfSumsALayer = sizeof(double) * 2 * 3;
   static constexpr std::uint64_t kBytesToWriteALayer = sizeof(float) * 2 * 6;
 
  private:
-  // The light of one layer, or of all.
-  struct Light {
-    std::string name;  // "": all
-    film::Film filtered, unfiltered;
-  };
-  // What a path adds to a Light.
-  struct Radiance {
-    Rgb filtered, input;
-  };
-
-  [[nodiscard]] std::vector<float> filled(const film::Film& unfiltered) const;
-  static void add(Light& light, std::uint32_t pixel, filter::Role role, const Radiance& radiance);
+  [[nodiscard]] std::vector<float> filled(std::size_t part) const;
   void add_guides(const filter::Records& records, std::size_t i, bool vertex);
 
-  std::vector<Light> light_;  // all, then the layers
-  film::Film details_;        // neighbours, radius, 0
+  std::vector<std::string> layer_names_;  // of the light
+  film::Film filtered_, unfiltered_;      // parts: the whole, then the layers
+  film::Film details_;                    // neighbours, radius, 0
   PictureLayers layers_;
   film::Film albedo_, normal_;
 };

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "core/parallel.h"
 #include "filter/records.h"
@@ -22,8 +23,8 @@ inline constexpr std::size_t kMostBands = 32;
   return std::bit_ceil(std::min(core::thread_count(), kMostBands));
 }
 
-// Calls visit(band, i) for the records [first, last), the bands in parallel; band < pixel_bands().
-// The records of a pixel come in path order and from one band.
+// Calls visit(band, some) with the numbers of some of the records [first, last), the bands in
+// parallel; band < pixel_bands(). The records of a pixel come in path order and from one band.
 template <class Visit>
 void for_each_by_pixel(const filter::Records& records, std::size_t first, std::size_t last,
                        const Visit& visit) {
@@ -39,7 +40,7 @@ void for_each_by_pixel(const filter::Records& records, std::size_t first, std::s
         mine[count] = i;
         count += ((records.pixel[i] / kPixelRun) & (bands - 1)) == band ? 1u : 0u;
       }
-      for (std::size_t k = 0; k < count; ++k) visit(band, mine[k]);
+      visit(band, std::span<const std::size_t>(mine).first(count));
     }
   });
 }

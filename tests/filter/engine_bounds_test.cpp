@@ -194,12 +194,16 @@ std::size_t differing(const Scene& scene) {
   std::vector<std::uint32_t> parents(tree.nodes(filter::engine::kParents));
   std::iota(parents.begin(), parents.end(), 0u);
   filter::engine::add_sources(tree, sums, scene.terms, parents, packet);
-  // In two steps it is the same to the last bit.
+  // In two steps it is the same to the last bit, the fifth of five values too.
   filter::engine::Packet again = packet;
   filter::engine::Found found;
+  std::vector<filter::engine::TreeSums> five;
+  for (int k = 0; k < 5; ++k) five.emplace_back(tree, scene.values, std::span<const float>());
+  alignas(64) double out[15][kWidth];
   filter::engine::find_sources(tree, scene.terms, parents, again, found);
-  filter::engine::add_found(sums, found, again);
-  const bool same = std::memcmp(packet.sum, again.sum, sizeof packet.sum) == 0 &&
+  filter::engine::add_found(five, found, out[0]);
+  const bool same = std::memcmp(packet.sum, out[0], sizeof packet.sum) == 0 &&
+                    std::memcmp(packet.sum, out[12], sizeof packet.sum) == 0 &&
                     std::memcmp(packet.count, again.count, sizeof packet.count) == 0 &&
                     std::memcmp(packet.met_itself, again.met_itself, sizeof again.met_itself) == 0;
   PairCounts counts;

@@ -30,16 +30,19 @@ class TreeEngine final : public Engine {
       core::throw_if_interrupted("no picture was written");
       Statistics& counts = parts[begin / Packets::kGrain];
       Found found;
+      core::Buffer<double> several(all.size() > 1 ? all.size() * 3 * kWidth : 0);
       packets_.each(begin, end, [&](auto queries, auto nodes, Packet& packet) {
+        const double* added = packet.sum[0];
         if (all.size() == 1) {
           add_sources(tree, sums[0], terms, nodes, packet);
-          average(queries, packet, all[0], neighbors);
         } else {
           find_sources(tree, terms, nodes, packet, found);
-          for (std::size_t k = 0; k < all.size(); ++k) {
-            add_found(sums[k], found, packet);
-            average(queries, packet, all[k], neighbors);
-          }
+          add_found(sums, found, several.begin());
+          added = several.begin();
+        }
+        for (const Averaged& one : all) {
+          average(queries, packet, added, one, neighbors);
+          added += 3 * kWidth;
         }
         if (count_refusals) count(queries, nodes, packet, counts);
         for (const std::uint32_t i : queries) {
@@ -53,12 +56,12 @@ class TreeEngine final : public Engine {
   }
 
  private:
-  // Averages one value of the queries that have a neighbour.
-  void average(std::span<const std::uint32_t> queries, const Packet& packet, const Averaged& one,
-               std::span<std::uint32_t> neighbors) const {
+  // Averages one value of the queries that have a neighbour, from its sums, (3, 16).
+  void average(std::span<const std::uint32_t> queries, const Packet& packet, const double* added,
+               const Averaged& one, std::span<std::uint32_t> neighbors) const {
     for (std::size_t k = 0; k < queries.size(); ++k) {
       const std::uint32_t i = queries[k];
-      Sum sum{packet.sum[0][k], packet.sum[1][k], packet.sum[2][k]};
+      Sum sum{added[k], added[kWidth + k], added[2 * kWidth + k]};
       auto count = static_cast<std::uint32_t>(packet.count[k]);
       // The walk met i like any other source; w_ii = 1 whatever the terms say.
       if (packet.met_itself[k] == 0 && packets_.is_source(i)) {

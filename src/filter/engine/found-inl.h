@@ -1,4 +1,4 @@
-// Lists the sources of a walk, and goes through the list again.
+// Lists the sources of a walk, and adds up what was listed.
 #if defined(PSF_FILTER_ENGINE_FOUND_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSF_FILTER_ENGINE_FOUND_INL_H
 #undef PSF_FILTER_ENGINE_FOUND_INL_H
@@ -7,7 +7,7 @@
 #endif
 
 #include "filter/engine/found.h"
-#include "filter/engine/vectors-inl.h"
+#include "filter/engine/sums-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace psf::filter::engine::HWY_NAMESPACE {
@@ -38,19 +38,76 @@ class FoundSink {
   Found& found_;
 };
 
-// Gives `sink` what was found, in the order of the walk.
-template <class Sink>
-HWY_INLINE void replay(const Found& found, Sink& sink) {
-  for (const auto& [level, family, bits, count] : found.nodes) {
-    sink.add_nodes(level, family, bits, count);
+// Sets packet.count.
+HWY_INLINE void count_found(const Found& found, Packet& packet) {
+  std::size_t all = 0;
+  for (const Found::Nodes& nodes : found.nodes) all += nodes.count;
+  for (std::size_t lane = 0; lane < kWidth; lane += kLanes) {
+    VI counted = hn::Set(kDI, static_cast<std::int32_t>(all));
+    for (const Found::Source& source : found.sources[lane / kLanes]) {
+      counted = add_one_where(mask_of(source.lanes), counted);
+    }
+    hn::Store(counted, kDI, packet.count + lane);
+  }
+}
+
+// As many values as have their sums in registers, of which there are 16, or 32.
+constexpr std::size_t kValuesAtOnce = kLanes == kWidth ? 4 : 2;
+
+// Sets `out`, (kCount, 3, 16), for kCount values, by the additions of SumSink.
+template <std::size_t kCount>
+HWY_INLINE void add_values(const TreeSums* sums, const Found& found, double* out) {
+  VD of_nodes[kCount][3];
+  for (std::size_t v = 0; v < kCount; ++v) {
+    alignas(64) double whole[3][kWidth] = {};
+    for (const auto& [level, family, bits, sources] : found.nodes) {
+      const double* below = sums[v].below(level, family);
+      for (std::size_t place = 0; place < kWidth; place += kLanes) {
+        const Parts parts(mask_of(bits >> place));
+        for (std::size_t c = 0; c < 3; ++c) {
+          for (std::size_t part = 0; part < kParts; ++part) {
+            const std::size_t at = place + part * kDoubles;
+            const VD value = hn::Load(kDD, below + c * kWidth + at);
+            hn::Store(add_where(parts.mask[part], hn::Load(kDD, whole[c] + at), value), kDD,
+                      whole[c] + at);
+          }
+        }
+      }
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      double total = 0;
+      for (const double at_place : whole[c]) total += at_place;
+      of_nodes[v][c] = hn::Set(kDD, total);
+    }
   }
   for (std::size_t lane = 0; lane < kWidth; lane += kLanes) {
-    const Found::List& list = found.sources[lane / kLanes];
-    sink.add_sources(lane, 0, [&](auto&& add) HWY_ATTR {
-      for (const auto& [place, lanes] : list) {
-        add(mask_of(lanes), sink.group(place / kWidth) + place % kWidth);
+    VD total[kCount][3][kParts];
+    for (auto& value : total) {
+      for (auto& sum : value) {
+        for (VD& part : sum) part = hn::Zero(kDD);
       }
-    });
+    }
+    for (const auto& [place, lanes] : found.sources[lane / kLanes]) {
+      const Parts parts(mask_of(lanes));
+      const std::size_t at = place / kWidth * 3 * kWidth + place % kWidth;
+      for (std::size_t v = 0; v < kCount; ++v) {
+        const double* value = sums[v].values(0) + at;
+        for (std::size_t c = 0; c < 3; ++c) {
+          const VD one = hn::Set(kDD, value[c * kWidth]);
+          for (std::size_t part = 0; part < kParts; ++part) {
+            total[v][c][part] = add_where(parts.mask[part], total[v][c][part], one);
+          }
+        }
+      }
+    }
+    for (std::size_t v = 0; v < kCount; ++v) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t part = 0; part < kParts; ++part) {
+          hn::Store(hn::Add(total[v][c][part], of_nodes[v][c]), kDD,
+                    out + (3 * v + c) * kWidth + lane + part * kDoubles);
+        }
+      }
+    }
   }
 }
 

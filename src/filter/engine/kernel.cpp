@@ -54,14 +54,18 @@ void find_sources_on(const Tree& tree, const WeightTerms& terms,
   found.clear();
   FoundSink sink(found);
   SourceWalk(tree, terms, packet, sink).run(parents);
+  count_found(found, packet);
 }
 
-void add_found_on(const TreeSums& sums, const Found& found, Packet& packet) {
-  for (auto& sum : packet.sum) std::fill_n(sum, kWidth, 0.0);
-  std::fill_n(packet.count, kWidth, 0);
-  SumSink sink(sums, packet);
-  replay(found, sink);
-  sink.finish();
+void add_found_on(std::span<const TreeSums> sums, const Found& found, double* out) {
+  for (; sums.size() >= kValuesAtOnce; sums = sums.subspan(kValuesAtOnce)) {
+    add_values<kValuesAtOnce>(sums.data(), found, out);
+    out += kValuesAtOnce * 3 * kWidth;
+  }
+  for (const TreeSums& one : sums) {
+    add_values<1>(&one, found, out);
+    out += 3 * kWidth;
+  }
 }
 
 void add_to_rings_on(const Tree& tree, const TreeSums& sums, const WeightTerms& terms,
@@ -105,8 +109,8 @@ void find_sources(const Tree& tree, const WeightTerms& terms,
                   std::span<const std::uint32_t> parents, Packet& packet, Found& found) {
   HWY_DYNAMIC_DISPATCH(find_sources_on)(tree, terms, parents, packet, found);
 }
-void add_found(const TreeSums& sums, const Found& found, Packet& packet) {
-  HWY_DYNAMIC_DISPATCH(add_found_on)(sums, found, packet);
+void add_found(std::span<const TreeSums> sums, const Found& found, double* out) {
+  HWY_DYNAMIC_DISPATCH(add_found_on)(sums, found, out);
 }
 void add_to_rings(const Tree& tree, const TreeSums& sums, const WeightTerms& terms,
                   std::span<const std::uint32_t> parents, Packet& packet, const RingPacket& rings) {

@@ -58,12 +58,11 @@ class Averages {
   void finish(std::span<const float> radius) {
     const std::span<const std::uint32_t> queries = roles_.queries;
     core::parallel_for(queries.size(), kQueriesARange, [&](std::size_t begin, std::size_t end) {
-      for (const std::uint32_t i : queries.subspan(begin, end - begin)) {
-        const bool is_source = roles_.of[i] == Role::source;
-        for (const Part& part : parts_) {
+      for (const Part& part : parts_) {
+        for (const std::uint32_t i : queries.subspan(begin, end - begin)) {
           Rgb& c_bar = (*part.c_bar)[i];
-          c_bar = finished(c_bar, result_.neighbors[i], is_source, radius[i], part.contribution[i],
-                           input_.records, i, input_.parameters);
+          c_bar = finished(c_bar, result_.neighbors[i], roles_.of[i] == Role::source, radius[i],
+                           part.contribution[i], input_.records, i, input_.parameters);
         }
       }
     });
