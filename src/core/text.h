@@ -1,8 +1,12 @@
-// Numbers as text for people.
+// Numbers as text for people, and lists that people write.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace psf::core {
 
@@ -14,6 +18,17 @@ inline std::string with_commas(std::uint64_t value) {
     text.insert(left, ",");
   }
   return text;
+}
+
+// The parts of `text` with `by` between; one empty part where it is empty.
+inline std::vector<std::string> split(std::string_view text, char by) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(by, begin), text.size());
+    parts.emplace_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
 }
 
 // A number with its noun: "1 pass", "2 passes".

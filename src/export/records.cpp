@@ -106,7 +106,9 @@ std::string component_name(const formats::Channel& channel, std::size_t c) {
       is_one_of({"position", "normal", "direction"})) {
     return fmt::format("{}_{}", channel.name, "xyz"[c]);
   }
-  if (is_one_of({"throughput", "contribution", "unfiltered", "reflectance"})) {
+  const bool is_layer = count == 3 && (channel.name.starts_with("contribution.") ||
+                                       channel.name.starts_with("unfiltered."));
+  if (is_layer || is_one_of({"throughput", "contribution", "unfiltered", "reflectance"})) {
     return fmt::format("{}_{}", channel.name, "rgb"[c]);
   }
   return fmt::format("{}_{}", channel.name, c);

@@ -112,6 +112,10 @@ class Writer {
   Writer& operator=(const Writer&) = delete;
 
   void write_header(const Image& image) {
+    constexpr std::size_t kShortName = 31;  // longer ones take a flag, which old readers refuse
+    for (const Layer& layer : image.layers) {
+      if (layer.channel.size() > kShortName) check(exr_set_longname_support(context_, 1));
+    }
     check(exr_add_part(context_, "", EXR_STORAGE_SCANLINE, &part_));
     check(exr_initialize_required_attr_simple(
         context_, part_, static_cast<std::int32_t>(image.width),

@@ -38,11 +38,12 @@ struct Squares {
 
 }  // namespace
 
-std::vector<float> Film::mean() const {
+std::vector<float> Film::mean_of_part(std::size_t part) const {
   std::vector<float> result(3 * count_.size(), 0.0f);
+  const double* sum = &sum_[3 * part * count_.size()];
   core::parallel_for(count_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
-      if (has_path(pixel)) set_mean(&sum_[3 * pixel], count_[pixel], &result[3 * pixel]);
+      if (has_path(pixel)) set_mean(sum + 3 * pixel, count_[pixel], &result[3 * pixel]);
     }
   });
   return result;
@@ -62,18 +63,15 @@ bool Film::has_path_everywhere() const {
 }
 
 std::vector<float> Film::filled_mean(std::size_t part) const {
-  std::vector<float> result(3 * count_.size(), 0.0f);
+  std::vector<float> result = mean_of_part(part);
+  std::vector<std::size_t> holes;
+  for (std::size_t pixel = 0; pixel < count_.size(); ++pixel) {
+    if (!has_path(pixel)) holes.push_back(pixel);
+  }
+  if (holes.empty()) return result;
   const auto first = sum_.begin() + static_cast<std::ptrdiff_t>(3 * part * count_.size());
   const auto end = first + static_cast<std::ptrdiff_t>(3 * count_.size());
   Squares squares{width_, height_, std::vector<double>(first, end), count_};
-  std::vector<std::size_t> holes;
-  for (std::size_t pixel = 0; pixel < count_.size(); ++pixel) {
-    if (has_path(pixel)) {
-      set_mean(&squares.sum[3 * pixel], count_[pixel], &result[3 * pixel]);
-    } else {
-      holes.push_back(pixel);
-    }
-  }
   for (std::size_t side = 2; !holes.empty() && squares.count.size() > 1; side *= 2) {
     squares = squares.twice_as_wide();
     std::erase_if(holes, [&](std::size_t pixel) {

@@ -13,7 +13,7 @@ namespace psf::film {
 // from one thread and in path order; then the picture has the same bytes for any number of threads.
 class Film {
  public:
-  // `parts`: the colours that a path has.
+  // `parts`: how many colours each path adds.
   Film(std::size_t width, std::size_t height, std::size_t parts = 1)
       : width_(width), height_(height), sum_(3 * parts * width * height), count_(width * height) {}
 
@@ -32,7 +32,7 @@ class Film {
   [[nodiscard]] std::size_t width() const { return width_; }
   [[nodiscard]] std::size_t height() const { return height_; }
   // The means of the first part, (height, width, 3); 0 where a pixel has no path.
-  [[nodiscard]] std::vector<float> mean() const;
+  [[nodiscard]] std::vector<float> mean() const { return mean_of_part(0); }
   // The means of one component, (height, width): colour c of part p is 3 p + c.
   [[nodiscard]] std::vector<float> mean(std::size_t component) const;
   // The means of a part, (height, width, 3). A pixel without path gets the mean of all paths in the
@@ -43,6 +43,8 @@ class Film {
   [[nodiscard]] bool has_path_everywhere() const;
 
  private:
+  [[nodiscard]] std::vector<float> mean_of_part(std::size_t part) const;
+
   std::size_t width_, height_;
   std::vector<double> sum_;  // (parts, height, width, 3)
   std::vector<std::uint64_t> count_;

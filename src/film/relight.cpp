@@ -4,15 +4,18 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.h"
+#include "core/text.h"
 
 namespace psf::film {
 namespace {
 
 constexpr const char* kRelight = "psf:relight";
-constexpr const char* kUnfiltered = "unfiltered-input.";
 constexpr const char* kColours = "RGB";
+// The layers of a pixel that add up to its light but for this share of it are all of its light.
+constexpr double kRounding = 1e-5;
 
 std::vector<float>& channel_of(Image& image, const std::string& name) {
   const auto found = std::find_if(image.layers.begin(), image.layers.end(),
@@ -24,24 +27,33 @@ std::vector<float>& channel_of(Image& image, const std::string& name) {
   return found->values;
 }
 
-// Multiplies the layers behind `prefix`, and sets its colours to their sum.
+// Multiplies the layers behind `prefix`, and its colours accordingly.
 void weigh(Image& image, const std::string& prefix, const std::vector<std::string>& layers,
            const LightWeights& weights) {
-  std::vector<double> sum(image.width * image.height);
+  struct Sums {
+    double before = 0, after = 0, size = 0;
+  };
+  std::vector<Sums> sums(image.width * image.height);
   for (int c = 0; c < 3; ++c) {
-    std::fill(sum.begin(), sum.end(), 0.0);
+    std::fill(sums.begin(), sums.end(), Sums());
     for (const std::string& layer : layers) {
       const auto given = weights.find(layer);
       const float weight = given == weights.end() ? 1 : given->second[c];
       std::vector<float>& values = channel_of(image, prefix + layer + "." + kColours[c]);
-      for (std::size_t pixel = 0; pixel < sum.size(); ++pixel) {
+      for (std::size_t pixel = 0; pixel < sums.size(); ++pixel) {
+        sums[pixel].before += double{values[pixel]};
+        sums[pixel].size += std::abs(double{values[pixel]});
         values[pixel] *= weight;
-        sum[pixel] += double{values[pixel]};
+        sums[pixel].after += double{values[pixel]};
       }
     }
     std::vector<float>& all = channel_of(image, prefix + kColours[c]);
-    std::transform(sum.begin(), sum.end(), all.begin(),
-                   [](double value) { return static_cast<float>(value); });
+    for (std::size_t pixel = 0; pixel < sums.size(); ++pixel) {
+      const auto& [before, after, size] = sums[pixel];
+      const double rest = double{all[pixel]} - before;
+      const bool is_rounding = std::abs(rest) <= kRounding * size;
+      all[pixel] = static_cast<float>(is_rounding ? after : rest + after);
+    }
   }
 }
 
@@ -58,16 +70,10 @@ std::string text_of(const LightWeights& weights) {
 }  // namespace
 
 std::vector<std::string> light_layers_of(const Image& image) {
-  std::vector<std::string> names;
   for (const auto& [name, text] : image.attributes) {
-    if (name != kLightLayers) continue;
-    for (std::size_t begin = 0; begin < text.size();) {
-      const std::size_t comma = std::min(text.find(',', begin), text.size());
-      names.push_back(text.substr(begin, comma - begin));
-      begin = comma + 1;
-    }
+    if (name == kLightLayers) return core::split(text, ',');
   }
-  return names;
+  return {};
 }
 
 Image relight(const Image& image, const LightWeights& weights) {
@@ -83,9 +89,14 @@ Image relight(const Image& image, const LightWeights& weights) {
     throw Error(ErrorCode::usage, fmt::format("{}: has no layer {} of the light; there are {}",
                                               image.path, layer, fmt::join(layers, ", ")));
   }
+  for (const auto& [layer, weight] : weights) {
+    if (is_finite(weight)) continue;
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: the weight of layer {} is not finite", image.path, layer));
+  }
   Image result = image;
   weigh(result, "", layers, weights);
-  const std::string unfiltered = kUnfiltered;
+  const std::string unfiltered = std::string(kUnfiltered) + ".";
   if (result.find(unfiltered + layers.front() + ".R") != nullptr) {
     weigh(result, unfiltered, layers, weights);
   }

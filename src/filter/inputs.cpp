@@ -34,7 +34,8 @@ std::vector<Rgb> demodulated(std::span<const Rgb> contribution, const Records& r
                              const Roles& roles) {
   std::vector<Rgb> values(records.size(), Rgb(0, 0, 0));
   for (const std::uint32_t j : roles.sources) {
-    values[j] = demodulate(contribution[j], records.reflectance[j]);
+    const Rgb value = demodulate(contribution[j], records.reflectance[j]);
+    if (is_finite(value)) values[j] = value;  // of layers it may not be, though it is of c
   }
   return values;
 }

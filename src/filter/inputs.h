@@ -18,8 +18,8 @@ void require_channels(const Records& records, const Parameters& parameters);
 // `terms`, without `gloss` where no vertex has a glossy lobe, since then `gloss` passes every pair.
 [[nodiscard]] WeightTerms terms_in_use(const Records& records, const WeightTerms& terms);
 
-// By record number: contribution / rho of the sources, 0 for other records. `contribution`: c, or
-// that of a layer.
+// By record number: contribution / rho of the sources; 0 where that is not finite, and for other
+// records. `contribution`: c, or that of a layer.
 [[nodiscard]] std::vector<Rgb> demodulated(std::span<const Rgb> contribution,
                                            const Records& records, const Roles& roles);
 

@@ -13,8 +13,8 @@ namespace psf::filter {
 constexpr std::uint8_t kHasVertex = 1;
 constexpr std::uint8_t kShaded = 2;
 
-// A named part of the light of every path: parts of c_i and of u_i. All layers together add up to c_i
-// and u_i.
+// A named part of the light of every path: parts of c_i and of u_i, finite. All layers of a file
+// add up to c_i and u_i.
 struct Layer {
   std::span<const Rgb> contribution;  // c_i^l; empty: 0
   std::span<const Rgb> unfiltered;    // u_i^l; empty: 0

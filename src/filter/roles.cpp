@@ -91,15 +91,10 @@ class Classifier {
   // of[i] for records [begin, end), and what is counted of them.
   void classify(std::size_t begin, std::size_t end, std::span<Role> of,
                 Statistics& statistics) const {
-    const std::vector<std::uint32_t> of_layers = bad_layers(begin, end);
     for (std::size_t i = begin; i < end; ++i) {
       const bool vertex = (r_.flags[i] & kHasVertex) != 0;
       const bool source = vertex && is_source(i);
-      std::uint32_t bits = bad_channels(i, vertex, source);
-      if (!of_layers.empty()) {
-        const std::uint32_t of_sources = 1u << kContribution | 1u << kReflectance;
-        bits |= of_layers[i - begin] & (source ? ~0u : ~of_sources);
-      }
+      const std::uint32_t bits = bad_channels(i, vertex, source);
       of[i] = bits != 0     ? Role::left_out
               : source      ? Role::source
               : vertex      ? Role::query
@@ -143,25 +138,6 @@ class Classifier {
   static void count(std::uint32_t bits, Statistics& statistics) {
     ++statistics.left_out;
     for (std::size_t k = 0; k < kCheckedChannels; ++k) statistics.non_finite[k] += (bits >> k) & 1;
-  }
-
-  // What bad_channels() would say of the layers of records [begin, end), were all of them sources; none
-  // where there are no layers. Layer after layer, as columns are fastest read.
-  [[nodiscard]] std::vector<std::uint32_t> bad_layers(std::size_t begin, std::size_t end) const {
-    std::vector<std::uint32_t> bad(r_.layers.empty() ? 0 : end - begin, 0);
-    for (const auto& [contribution, unfiltered] : r_.layers) {
-      for (std::size_t i = begin; i < end && !unfiltered.empty(); ++i) {
-        bad[i - begin] |= std::uint32_t{!all_finite(unfiltered[i])} << kUnfiltered;
-      }
-      for (std::size_t i = begin; i < end && !contribution.empty(); ++i) {
-        const Rgb& c = contribution[i];
-        bad[i - begin] |= std::uint32_t{!all_finite(c)} << kContribution;
-        if (!demodulate_) continue;
-        bad[i - begin] |= std::uint32_t{!all_finite(demodulate(c, r_.reflectance[i]))}
-                          << kReflectance;
-      }
-    }
-    return bad;
   }
 
   // Bit k set: the value of channel k of kCheckedNames is in use and not finite.

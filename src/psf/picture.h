@@ -36,11 +36,11 @@ struct PSF_API Picture {
   // The bytes of a PNG to look at: times 2^exposure, tone-mapped; those of save() at exposure 0.
   [[nodiscard]] std::vector<unsigned char> png(float exposure = 0) const;
 
-  // The names of the layers of the light, which add up to R, G, B; none where it has none.
+  // The names of the layers of the light; none where it has none, as what read() gives.
   [[nodiscard]] std::vector<std::string> light_layers() const;
   // What psf relight does: each layer of the light that is named times its weight by colour, and
-  // R, G, B their sum. Throws Error{bad_input} where there are no such layers, Error{usage} for a
-  // name that is none of them.
+  // R, G, B with it. Throws Error{bad_input} where there are no such layers, Error{usage} for a
+  // name that is none of them or a weight that is not finite.
   [[nodiscard]] Picture relight(const std::map<std::string, std::array<float, 3>>& weights) const;
 
   // Writes an EXR with all layers and attributes, or a PNG to look at, by the extension. The file

@@ -20,9 +20,12 @@ namespace py = pybind11;
 
 // Calls of this module that are at work.
 inline std::atomic<int> at_work{0};
-// The interpreter ends, and no call may begin: a thread that waits for it then is ended in the midst
-// of one. Read and written with the interpreter lock.
-inline bool ending = false;
+// The thread that ends the interpreter, once it does. Calls of others may not begin: who waits for
+// the interpreter then is ended in the midst. Read and written with the interpreter lock.
+inline std::optional<std::thread::id> ending;
+[[nodiscard]] inline bool is_cut_off() {
+  return ending && *ending != std::this_thread::get_id();
+}
 
 // Counts a call from here to the end of the scope.
 struct AtWork {
@@ -43,7 +46,7 @@ struct AtWork {
 // or of core.
 template <class Scope, class Work>
 auto interruptible(const py::object& progress, const Work& work) {
-  if (ending) end_thread();
+  if (is_cut_off()) end_thread();
   std::atomic<std::uint64_t> done{0}, total{0};
   std::atomic<bool> stopped{false}, finished{false};
   const auto on_progress = [&](std::uint64_t now, std::uint64_t all) {
@@ -77,7 +80,7 @@ auto interruptible(const py::object& progress, const Work& work) {
     }
   }
   worker.join();
-  if (ending) end_thread();
+  if (is_cut_off()) end_thread();
   if (raised) std::rethrow_exception(raised);
   if (failed) std::rethrow_exception(failed);
   if (!progress.is_none() && total > 0) progress(done.load(), total.load());
@@ -88,7 +91,7 @@ auto interruptible(const py::object& progress, const Work& work) {
 // ends all calls.
 inline void end_at_exit(void (*interrupt)() noexcept) {
   py::module_::import("atexit").attr("register")(py::cpp_function([interrupt] {
-    ending = true;
+    ending = std::this_thread::get_id();
     const py::gil_scoped_release released;
     while (at_work > 0) {
       interrupt();

@@ -29,10 +29,13 @@ void BlockLoop::visit_rest(const Visitor& visit) {
 
 void BlockLoop::visit(std::uint64_t k, const Visitor& visit) {
   const bool ahead = read_ahead_ && k + 1 < blocks_->count();
-  const filter::Records records =
-      reader_.read((*blocks_)[k], ahead ? std::optional((*blocks_)[k + 1]) : std::nullopt).view();
+  const BlockRecords& read =
+      reader_.read((*blocks_)[k], ahead ? std::optional((*blocks_)[k + 1]) : std::nullopt);
+  const filter::Records records = read.view();
+  std::uint64_t not_finite = 0;
+  for (const BlockRecords::LayerColumns& layer : read.layers) not_finite += layer.not_finite;
   const filter::Block block = describe_block(dump_, *blocks_, k, count_);
-  visit({k, (*blocks_)[k], records, block});
+  visit({k, (*blocks_)[k], records, block, not_finite});
 }
 
 }  // namespace psf::run

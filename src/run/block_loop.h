@@ -20,6 +20,7 @@ class BlockLoop {
     filter::PathRange paths;
     const filter::Records& records;
     const filter::Block& block;
+    std::uint64_t not_finite_in_layers;  // values of layers of the light that were made 0
   };
   using Visitor = std::function<void(const Visit&)>;
 

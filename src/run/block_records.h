@@ -1,6 +1,7 @@
 // The records of one block with their memory, reused from block to block.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct BlockRecords {
   // The columns of the layers, and the views of them that view() gives out.
   struct LayerColumns {
     std::vector<Rgb> contribution, unfiltered;
+    std::uint64_t not_finite = 0;  // values that are 0 in place of what the file has
   };
   std::vector<LayerColumns> layers;
   std::vector<filter::Layer> layer_views;

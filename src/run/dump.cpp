@@ -44,6 +44,18 @@ bool is_float(Type type) {
   return type == Type::f16 || type == Type::f32 || type == Type::f64;
 }
 
+// What is not finite would take all that is averaged with it along, also in other layers' sums.
+void make_finite(BlockRecords::LayerColumns& layer) {
+  layer.not_finite = 0;
+  for (std::vector<Rgb>* column : {&layer.contribution, &layer.unfiltered}) {
+    for (Rgb& value : *column) {
+      if (is_finite(value)) continue;
+      value = Rgb(0, 0, 0);
+      ++layer.not_finite;
+    }
+  }
+}
+
 }  // namespace
 
 Dump::Dump(const std::string& path) : reader_(path), metadata_(metadata_of(reader_)) {
@@ -175,9 +187,11 @@ void Dump::read(const filter::PathRange& range, const ChannelSet& channels,
     add_task(channels.layers[k].unfiltered, out.layers[k].unfiltered);
   }
   core::parallel_for(tasks.size(), 1, [&](std::size_t begin, std::size_t) { tasks[begin](); });
+  core::parallel_for(out.layers.size(), 1,
+                     [&](std::size_t begin, std::size_t) { make_finite(out.layers[begin]); });
   out.layer_views.clear();
-  for (const auto& [contribution, unfiltered] : out.layers) {
-    out.layer_views.push_back({contribution, unfiltered});
+  for (const BlockRecords::LayerColumns& layer : out.layers) {
+    out.layer_views.push_back({layer.contribution, layer.unfiltered});
   }
   if (!channels.flags) out.flags.assign(count, filter::kHasVertex | filter::kShaded);
   check_pixels(range, out);

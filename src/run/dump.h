@@ -46,7 +46,8 @@ class Dump {
   // what needs it.
   [[nodiscard]] ChannelSet select(const filter::Parameters& parameters, bool guides) const;
 
-  // Reads the paths [range.first, range.last), columns in parallel. Throws Error{bad_input} that
+  // Reads the paths [range.first, range.last), columns in parallel. What of a layer of the light is
+  // not finite is 0, and counted. Throws Error{bad_input} that
   // names a record whose pixel or camera does not exist. Thread-safe.
   void read(const filter::PathRange& range, const ChannelSet& channels, BlockRecords& out) const;
 

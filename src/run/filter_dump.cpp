@@ -89,6 +89,7 @@ class DumpFilter {
       estimates = filter::estimate(visit.records, radius_, visit.block, run_.parameters);
     });
     outcome_.statistics += estimates.statistics;
+    outcome_.not_finite_in_layers += visit.not_finite_in_layers;
     add_to_pictures(visit.paths, visit.records, estimates);
     if (run_.on_progress) {
       run_.on_progress(visit.paths.last - blocks_.all().first, blocks_.all().size());

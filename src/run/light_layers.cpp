@@ -1,46 +1,43 @@
 #include "run/light_layers.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <iterator>
 #include <string_view>
 #include <utility>
 
 #include "core/error.h"
+#include "film/light_layers.h"
 
 namespace psf::run {
 namespace {
-
-// What pictures have beside the light.
-constexpr std::string_view kOtherLayers[] = {"unfiltered-input", "neighbors", "radius", "albedo",
-                                             "normal"};
 
 [[noreturn]] void refuse_layer(const formats::Reader& reader, const std::string& why) {
   throw Error(ErrorCode::bad_input, fmt::format("{}: {}", reader.path(), why));
 }
 
-void check_layer(const formats::Reader& reader, const formats::Channel& channel,
-                 std::string_view layer) {
+// `channel`: of a layer that is wanted.
+void check_channel(const formats::Reader& reader, const formats::Channel& channel,
+                   std::string_view layer) {
   using formats::Type;
   const bool is_float =
       channel.type == Type::f16 || channel.type == Type::f32 || channel.type == Type::f64;
-  if (!is_float || channel.components != 3) {
-    refuse_layer(reader,
-                 fmt::format("channel {} is {} x {}, expected f32 x 3: it is a layer of "
-                             "the light; see formats/README.md",
-                             channel.name, formats::name_of(channel.type), channel.components));
+  std::string why = film::why_no_layer_name(layer);
+  if (why.empty() && (!is_float || channel.components != 3)) {
+    why = fmt::format("it is {} x {}, and layers of the light are f32 x 3",
+                      formats::name_of(channel.type), channel.components);
   }
-  if (layer.find_first_of(",=") != std::string_view::npos) {
-    refuse_layer(reader, fmt::format("channel {}: the name of a layer of the light has no ',' and "
-                                     "no '='",
-                                     channel.name));
-  }
-  if (std::find(std::begin(kOtherLayers), std::end(kOtherLayers), layer) !=
-      std::end(kOtherLayers)) {
-    refuse_layer(reader, fmt::format("channel {}: {} is another layer of pictures; give this part "
-                                     "of the light another name",
-                                     channel.name, layer));
+  if (why.empty()) return;
+  refuse_layer(reader,
+               fmt::format("channel {0}: {1}; --layers none does without, and psf cat --drop "
+                           "{0} leaves it out",
+                           channel.name, why));
+}
+
+void check_layer(const formats::Reader& reader, const LightLayer& layer) {
+  for (const auto& place : {layer.contribution, layer.unfiltered}) {
+    if (place) check_channel(reader, reader.head().channels[*place], layer.name);
   }
 }
 
@@ -60,7 +57,6 @@ std::vector<LightLayer> all_layers(const formats::Reader& reader) {
       std::string_view name = channels[k].name;
       if (!name.starts_with(prefix) || name.size() == prefix.size()) continue;
       name.remove_prefix(prefix.size());
-      check_layer(reader, channels[k], name);
       auto layer = find_layer(layers, name);
       if (layer == layers.end()) {
         layer = layers.insert(layers.end(), LightLayer{std::string(name), {}, {}});
@@ -73,21 +69,26 @@ std::vector<LightLayer> all_layers(const formats::Reader& reader) {
 
 }  // namespace
 
+std::vector<std::string> light_layer_names(const formats::Reader& reader) {
+  std::vector<std::string> names;
+  for (const LightLayer& layer : all_layers(reader)) names.push_back(layer.name);
+  return names;
+}
+
 std::vector<LightLayer> light_layers(const formats::Reader& reader,
                                      const std::optional<std::vector<std::string>>& names) {
-  std::vector<LightLayer> all = all_layers(reader);
-  if (!names) return all;
+  const std::vector<LightLayer> all = all_layers(reader);
   std::vector<LightLayer> chosen;
-  for (const std::string& name : *names) {
+  for (const std::string& name : names ? *names : light_layer_names(reader)) {
     const auto found = find_layer(all, name);
     if (found == all.end()) {
-      std::string there;
-      for (const LightLayer& layer : all) {
-        there += (there.empty() ? "there are " : ", ") + layer.name;
-      }
-      refuse_layer(reader, fmt::format("has no layer {} of the light; {}", name,
-                                       there.empty() ? "it has none" : there));
+      refuse_layer(
+          reader,
+          fmt::format("has no layer {} of the light; there are {}", name,
+                      all.empty() ? "none"
+                                  : fmt::format("{}", fmt::join(light_layer_names(reader), ", "))));
     }
+    check_layer(reader, *found);
     chosen.push_back(*found);
   }
   return chosen;

@@ -100,10 +100,10 @@ class ManyFilter {
   }
 
   void filter(const BlockLoop::Visit& visit) {
-    const auto& [k, paths, records, block] = visit;
+    const filter::Records& records = visit.records;
     const std::size_t cameras = dump_.cameras().size();
     const std::span<ManyPictures> pictures =
-        std::span(outcome_.pictures).subspan(k % run_.parts * cameras, cameras);
+        std::span(outcome_.pictures).subspan(visit.number % run_.parts * cameras, cameras);
     filter::ManyEstimates averages;
     adder_.start(records, pictures);
     core::undisturbed([&] {
@@ -118,9 +118,9 @@ class ManyFilter {
     for (std::size_t r = 0; r < run_.radii.size(); ++r) {
       outcome_.statistics[r] += averages.statistics[r];
     }
-    set_radius(records, block, averages.roles);
+    set_radius(records, visit.block, averages.roles);
     if (run_.on_progress) {
-      run_.on_progress(paths.last - dump_.pass_bounds()[first_],
+      run_.on_progress(visit.paths.last - dump_.pass_bounds()[first_],
                        dump_.pass_bounds()[last_] - dump_.pass_bounds()[first_]);
     }
   }

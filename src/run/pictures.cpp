@@ -1,9 +1,10 @@
 #include "run/pictures.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/parallel.h"
-#include "film/relight.h"
+#include "film/light_layers.h"
 #include "run/path_radiance.h"
 #include "run/pixel_bands.h"
 
@@ -44,26 +45,23 @@ Radiance radiance_of(const Part& part, const Rgb& alpha, Role role, std::size_t 
   return {filtered, path_radiance(u, alpha, value(part.c))};
 }
 
-// Appends to `kept` those of `some` records that are in the pictures: not left out, and finite in
-// every part, so that the layers add up. Returns how many overflow. Part after part: a path's parts
-// lie in as many columns, which are fastest read one at a time.
+// Sets `kept` to those of `some` records that are in the pictures: not left out, and finite.
+// Returns how many overflow.
 std::uint64_t keep(const Records& records, const Estimates& estimates,
                    std::span<const std::size_t> some, std::vector<std::size_t>& kept) {
+  const Part whole = whole_of(records, estimates);
+  std::uint64_t overflows = 0;
   kept.clear();
   for (const std::size_t i : some) {
-    if (estimates.roles[i] != Role::left_out) kept.push_back(i);
+    const Role role = estimates.roles[i];
+    if (role == Role::left_out) continue;
+    if (radiance_of(whole, records.throughput[i], role, i).finite()) {
+      kept.push_back(i);
+    } else {
+      ++overflows;
+    }
   }
-  const std::size_t before = kept.size();
-  const auto keep_finite = [&](const Part& part) {
-    std::erase_if(kept, [&](std::size_t i) {
-      return !radiance_of(part, records.throughput[i], estimates.roles[i], i).finite();
-    });
-  };
-  keep_finite(whole_of(records, estimates));
-  for (std::size_t k = 0; k < records.layers.size(); ++k) {
-    keep_finite(layer_of(records, estimates, k));
-  }
-  return before - kept.size();
+  return overflows;
 }
 
 }  // namespace
@@ -99,6 +97,7 @@ void CameraPictures::add_layer(std::size_t k, const Records& records, const Esti
   const std::uint32_t pixel = records.pixel[i];
   const Radiance radiance =
       radiance_of(layer_of(records, estimates, k), records.throughput[i], role, i);
+  if (!radiance.finite()) return;
   filtered_.add_part(k + 1, pixel, radiance.filtered);
   if (filter::is_input(role)) unfiltered_.add_part(k + 1, pixel, radiance.input);
 }
@@ -120,6 +119,22 @@ std::vector<float> CameraPictures::filled(std::size_t part) const {
     if (!filtered_.has_path(pixel)) std::fill_n(&values[3 * pixel], 3, 0.0f);
   }
   return values;
+}
+
+double CameraPictures::light_beside_layers() const {
+  if (layer_names_.empty()) return 0;
+  double light = 0, difference = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::vector<float> whole = filtered_.mean(c);
+    std::vector<double> rest(whole.begin(), whole.end());
+    for (std::size_t k = 1; k <= layer_names_.size(); ++k) {
+      const std::vector<float> layer = filtered_.mean(3 * k + c);
+      for (std::size_t pixel = 0; pixel < rest.size(); ++pixel) rest[pixel] -= double{layer[pixel]};
+    }
+    for (const float value : whole) light += std::abs(double{value});
+    for (const double value : rest) difference += std::abs(value);
+  }
+  return light > 0 ? difference / light : 0;
 }
 
 film::Image CameraPictures::image() const {
@@ -145,12 +160,13 @@ film::Image CameraPictures::image() const {
       planes.push_back({prefix + suffixes[k], &film, first + k});
     }
   };
+  const std::string unfiltered = std::string(film::kUnfiltered) + ".";
   // Where a pixel has no path of its own, filled() takes those around.
   const bool has_holes = layers_.unfiltered && !unfiltered_.has_path_everywhere();
   for (std::size_t part = 0; part < prefixes.size(); ++part) {
     add(prefixes[part], "RGB", filtered_, 3 * part);
     if (layers_.unfiltered && !has_holes) {
-      add("unfiltered-input." + prefixes[part], "RGB", unfiltered_, 3 * part);
+      add(unfiltered + prefixes[part], "RGB", unfiltered_, 3 * part);
     }
   }
   if (layers_.neighbors) add("neighbors.", "Y", details_, 0);
@@ -163,7 +179,7 @@ film::Image CameraPictures::image() const {
   });
   if (has_holes) {
     for (std::size_t part = 0; part < prefixes.size(); ++part) {
-      image.add("unfiltered-input." + prefixes[part], "RGB", filled(part));
+      image.add(unfiltered + prefixes[part], "RGB", filled(part));
     }
   }
   return image;
@@ -184,6 +200,7 @@ std::uint64_t add_records(const Records& records, const Estimates& estimates,
     Band& band = bands[b];
     band.overflows += keep(records, estimates, some, band.kept);
     for (const std::size_t i : band.kept) picture_of(i).add(records, estimates, radius, i);
+    // Layer after layer: they lie in as many columns, which are fastest read one at a time.
     for (std::size_t k = 0; k < records.layers.size(); ++k) {
       for (const std::size_t i : band.kept) picture_of(i).add_layer(k, records, estimates, i);
     }

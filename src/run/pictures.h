@@ -33,11 +33,11 @@ class CameraPictures {
   // `layers.light`: the names of the layers that the records will have, in their order.
   CameraPictures(const filter::CameraView& camera, const PictureLayers& layers);
 
-  // Adds record i of a filtered block [pixel], without its layers of the light. Add the records of a
-  // pixel in path order, from one thread, which are all finite.
+  // Adds record i of a filtered block [pixel], without its layers of the light. Add the records of
+  // a pixel in path order, from one thread, which are all finite.
   void add(const filter::Records& records, const filter::Estimates& estimates,
            std::span<const float> radius, std::size_t i);
-  // Adds what layer k of the records has of record i.
+  // Adds what layer k of the records has of record i, unless it overflows.
   void add_layer(std::size_t k, const filter::Records& records, const filter::Estimates& estimates,
                  std::size_t i);
 
@@ -49,8 +49,13 @@ class CameraPictures {
   // the attribute film::kLightLayers has their names.
   [[nodiscard]] film::Image image() const;
 
-  // The bytes per pixel of the sums, and those that image() and writing it take temporarily; of each
-  // layer of the light beside.
+  [[nodiscard]] const std::vector<std::string>& light_layers() const { return layer_names_; }
+  // How far the layers of the light are from adding up to the filtered picture: the differences, as
+  // a share of its light; 0 where there are none.
+  [[nodiscard]] double light_beside_layers() const;
+
+  // The bytes per pixel of the sums, and those that image() and writing it take temporarily; of
+  // each layer of the light beside.
   static constexpr std::uint64_t kBytesOfFilm = 3 * sizeof(double) + sizeof(std::uint64_t);
   static constexpr std::uint64_t kBytesOfSums = 5 * kBytesOfFilm;
   static constexpr std::uint64_t kBytesToWrite = sizeof(float) * 2 * 14;

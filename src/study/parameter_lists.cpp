@@ -9,22 +9,13 @@
 
 #include "core/error.h"
 #include "core/number.h"
+#include "core/text.h"
 
 namespace psf::study {
 namespace {
 
 constexpr std::size_t kMostValues = 1000;  // most values of a list
 constexpr double kSlack = 1e-9;  // part of a step: ranges include their end despite rounding
-
-std::vector<std::string> split(const std::string& text, char by) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(by, begin), text.size());
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
-}
 
 // A number and the unit behind it: "8px".
 struct Amount {
@@ -50,7 +41,7 @@ std::vector<std::string> range_values(const std::string& text, const std::string
                              "2px:32px:x2 or 0.1:0.5:0.1",
                              name, text, why));
   };
-  const std::vector<std::string> parts = split(text, ':');
+  const std::vector<std::string> parts = core::split(text, ':');
   if (parts.size() != 3) throw refuse("a range has three parts");
   const bool by_factor = !parts[2].empty() && parts[2][0] == 'x';
   const auto from = parse_amount(parts[0]), to = parse_amount(parts[1]),
@@ -80,7 +71,7 @@ std::vector<std::string> range_values(const std::string& text, const std::string
 
 std::vector<std::string> list_values(const std::string& text, const std::string& name) {
   std::vector<std::string> values;
-  for (const std::string& item : split(text, ',')) {
+  for (const std::string& item : core::split(text, ',')) {
     if (item.empty()) {
       throw Error(ErrorCode::usage, fmt::format("`{}`: '{}' has an empty value", name, text));
     }

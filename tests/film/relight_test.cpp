@@ -1,11 +1,12 @@
 // A relit picture is the weighted sum of its layers, and can be relit again.
 #include "film/relight.h"
 
-#include <cstring>
+#include <limits>
 
 #include "catch.h"
 #include "core/error.h"
 #include "film/attributes.h"
+#include "read_text.h"
 #include "temp_folder.h"
 
 namespace psf {
@@ -70,6 +71,33 @@ TEST_CASE("A layer that is not named keeps its light, and one of weight 0 leaves
   CHECK(film::relight(image, {}).rgb() == image.rgb());
 }
 
+TEST_CASE("Light that is in no layer stays") {
+  Image image = lit();
+  image.attributes.back().second = "sky";
+  CHECK(film::relight(image, {{"sky", Rgb(1)}}).rgb() == image.rgb());
+  CHECK(film::relight(image, {{"sky", Rgb(0)}}).rgb() == image.rgb("sun."));
+  const auto sun = image.rgb("sun."), sky = image.rgb("sky.");
+  const auto relit = film::relight(image, {{"sky", Rgb(-2)}}).rgb();
+  for (std::size_t pixel = 0; pixel < 6; ++pixel) {
+    CHECK(relit[pixel] == sun[pixel] + sky[pixel] * -2.0f);
+  }
+}
+
+TEST_CASE("Channels with long names are written and read") {
+  const tests::TempFolder folder;
+  Image image = lit();
+  const std::string name = std::string(40, 'x') + ".R";
+  image.layers.push_back({name, {1, 2, 3, 4, 5, 6}});
+  film::write_exr(folder / "long.exr", image);
+  const Image read = film::read_exr(folder / "long.exr");
+  REQUIRE(read.find(name) != nullptr);
+  CHECK(*read.find(name) == *image.find(name));
+  // Files without any are as they were: the flag is not set (byte 5, bit 2).
+  film::write_exr(folder / "short.exr", lit());
+  CHECK((tests::read_text(folder / "long.exr")[5] & 4) != 0);
+  CHECK((tests::read_text(folder / "short.exr")[5] & 4) == 0);
+}
+
 TEST_CASE("What is relit is written, read and relit again") {
   const tests::TempFolder folder;
   const Image once = film::relight(lit(), {{"sun", Rgb(4)}});
@@ -89,6 +117,8 @@ TEST_CASE("What cannot be relit is an error that names the file and what there i
   Image image = lit();
   CHECK(message_of(image, {{"moon", Rgb(1)}}, ErrorCode::usage) ==
         "lit.exr: has no layer moon of the light; there are sun, sky");
+  CHECK(message_of(image, {{"sun", Rgb(std::numeric_limits<float>::infinity())}},
+                   ErrorCode::usage) == "lit.exr: the weight of layer sun is not finite");
   image.attributes.back().second = "sun,sky,lamp";
   CHECK(message_of(image, {}, ErrorCode::bad_input).starts_with("lit.exr: has no channel lamp.R"));
   image.attributes.pop_back();

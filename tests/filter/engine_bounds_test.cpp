@@ -1,5 +1,6 @@
 // What bounds decide for whole nodes is what every pair below says, also where a threshold lies
 // exactly on a value that occurs.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -194,21 +195,33 @@ std::size_t differing(const Scene& scene) {
   std::vector<std::uint32_t> parents(tree.nodes(filter::engine::kParents));
   std::iota(parents.begin(), parents.end(), 0u);
   filter::engine::add_sources(tree, sums, scene.terms, parents, packet);
-  // In two steps it is the same to the last bit, the fifth of five values too.
+  // In two steps it is the same to the last bit, for each of five values.
   filter::engine::Packet again = packet;
   filter::engine::Found found;
-  std::vector<filter::engine::TreeSums> five;
-  for (int k = 0; k < 5; ++k) five.emplace_back(tree, scene.values, std::span<const float>());
-  alignas(64) double out[15][kWidth];
   filter::engine::find_sources(tree, scene.terms, parents, again, found);
-  filter::engine::add_found(five, found, out[0]);
-  const bool same = std::memcmp(packet.sum, out[0], sizeof packet.sum) == 0 &&
-                    std::memcmp(packet.sum, out[12], sizeof packet.sum) == 0 &&
-                    std::memcmp(packet.count, again.count, sizeof packet.count) == 0 &&
-                    std::memcmp(packet.met_itself, again.met_itself, sizeof again.met_itself) == 0;
+  constexpr std::size_t kValues = 5;
+  std::vector<filter::engine::TreeSums> five;
+  for (std::size_t v = 0; v < kValues; ++v) {
+    std::vector<Rgb> values = scene.values;
+    for (Rgb& value : values) value *= static_cast<float>(v + 1);
+    five.emplace_back(tree, values, std::span<const float>());
+  }
+  alignas(64) double out[kValues][3][kWidth];
+  filter::engine::add_found(five, found, out[0][0]);
+  std::size_t in_two_steps = 0;
+  for (std::size_t v = 0; v < kValues; ++v) {
+    filter::engine::Packet alone = packet;
+    for (auto& sum : alone.sum) std::fill_n(sum, kWidth, 0.0);
+    std::fill_n(alone.count, kWidth, 0);
+    filter::engine::add_sources(tree, five[v], scene.terms, parents, alone);
+    const bool same = std::memcmp(alone.sum, out[v], sizeof out[v]) == 0 &&
+                      std::memcmp(alone.count, again.count, sizeof again.count) == 0 &&
+                      std::memcmp(alone.met_itself, again.met_itself, sizeof again.met_itself) == 0;
+    in_two_steps += same ? 0 : 1;
+  }
   PairCounts counts;
   filter::engine::count_pairs(tree, scene.terms, parents, packet, counts);
-  return differing(scene, packet, counts) + (same ? 0 : 1);
+  return differing(scene, packet, counts) + in_two_steps;
 }
 
 void check_bounds(std::uint32_t scenes, std::uint32_t seed) {

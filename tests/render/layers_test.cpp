@@ -209,21 +209,23 @@ TEST_CASE("The share of the diffuse lobe is that of f", "[layers]") {
 TEST_CASE("Names of layers are names of channels, one for each name of a light", "[layers]") {
   Scene scene = room();
   scene.environment.radiance = Rgb(1);
-  for (const char* name : {"bulb", "key light", "key_light", "sky", "normal", "gr\xC3\xBCn", ""}) {
+  for (const char* name :
+       {"bulb", "key light", "key_light", "sky", "normal", "gr\xC3\xBCn", "", "-x", "all"}) {
     scene.lights.push_back(point_light({0, 0, 0}, 1));
     scene.lights.back().name = name;
   }
   const auto by = integrator(scene, LayerKind::lights);
   CHECK(names_of(*by) == std::vector<std::string>{"bulb", "key_light", "key_light_2", "sky_2",
-                                                  "normal_2", "gr__n", "light_7", "lamp", "sky"});
+                                                  "normal_2", "gr__n", "light_7", "_x", "all_2",
+                                                  "lamp", "sky"});
   for (const auto& channel : record_channels({}, by->layers())) {
     CHECK(channel.name.size() <= 56);
   }
   const auto channels = record_channels({}, by->layers());
-  CHECK(channels.size() == record_channels().size() + 18);
+  CHECK(channels.size() == record_channels().size() + 22);
   CHECK(channels.back().name == "unfiltered.sky");
   scene.lights.back().name = std::string(200, 'x');
-  CHECK(names_of(*integrator(scene, LayerKind::lights))[6] == std::string(40, 'x'));
+  CHECK(names_of(*integrator(scene, LayerKind::lights))[8] == std::string(40, 'x'));
   for (int k = 0; k < 40; ++k) {
     scene.lights.push_back(point_light({0, 0, 0}, 1));
     scene.lights.back().name = "lamp " + std::to_string(k);

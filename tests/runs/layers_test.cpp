@@ -46,8 +46,8 @@ class Layered {
   TempFolder folder_;
 };
 
-// The largest difference between the colours behind `prefix` and the sum of the layers', relative to
-// what is added up.
+// The largest difference between the colours behind `prefix` and the sum of the layers', relative
+// to what is added up.
 double off_their_sum(const film::Image& image, const std::string& prefix, const Names& layers) {
   const std::vector<Rgb> all = image.rgb(prefix);
   double largest = 0;
@@ -74,10 +74,9 @@ Names names_of(const std::vector<run::LightLayer>& layers) {
 TEST_CASE("The layers of a dump are in its pictures, and add up to them") {
   const Layered dump(51);
   const std::string path = dump.written();
-  for (const char* estimator : {"average", "hash", "adaptive", "disk"}) {
+  for (const char* estimator : {"average", "hash", "adaptive"}) {
     FilterRequest request = default_run();
     filter::set_parameter(request.parameters, "estimator", estimator);
-    if (std::string(estimator) == "disk") continue;  // of several cameras
     for (const film::Image& image : filtered(path, request)) {
       INFO(estimator);
       CHECK(off_their_sum(image, "", {"key", "seen", "fill"}) <= 1e-6);
@@ -123,11 +122,9 @@ TEST_CASE("A layer is the picture of a dump that has its light alone") {
   }
 }
 
-TEST_CASE("Layers add up where paths are not shaded, and where a path is left out") {
+TEST_CASE("Layers add up where paths are not shaded, and where a path overflows") {
   Layered dump(54);
   for (std::size_t i = 0; i < dump.set_.size(); i += 2) dump.set_.flags[i] &= filter::kHasVertex;
-  dump.key_[7].x = kNan;
-  dump.key_u_[9].y = kInfinity;
   dump.fill_[21] = Rgb(3e38f);
   dump.set_.contribution[21] = dump.key_[21] + dump.fill_[21];
   dump.set_.throughput[21] = Rgb(100);
@@ -138,6 +135,28 @@ TEST_CASE("Layers add up where paths are not shaded, and where a path is left ou
       CHECK(off_their_sum(image, "", {"key", "seen", "fill"}) <= 1e-6);
       CHECK(off_their_sum(image, "unfiltered-input.", {"key", "seen", "fill"}) <= 1e-6);
     }
+  }
+}
+
+TEST_CASE("What of a layer is not finite counts as 0, is told, and has no say in the picture") {
+  Layered dump(59);
+  FilterRequest request = default_run();
+  const std::vector<film::Image> whole = filtered(dump.written(), request);
+  std::size_t damaged = 0;
+  for (std::size_t i = 0; i < dump.set_.size(); i += 10, ++damaged) {
+    dump.key_[i].x = i % 20 == 0 ? kNan : kInfinity;
+  }
+  dump.seen_[5].y = -kInfinity;
+  const std::string path = dump.written();
+  const run::FilterResult result = run::filter_dump(run::Dump(path), request);
+  CHECK(result.not_finite_in_layers == damaged + 1);
+  CHECK(result.statistics.left_out == 0);
+  const std::vector<film::Image> pictures = images(result.pictures);
+  for (std::size_t camera = 0; camera < pictures.size(); ++camera) {
+    CHECK(pictures[camera].rgb() == whole[camera].rgb());
+    CHECK(pictures[camera].rgb("fill.") == whole[camera].rgb("fill."));
+    CHECK(pictures[camera].rgb("key.") != whole[camera].rgb("key."));
+    for (const Rgb& color : pictures[camera].rgb("key.")) CHECK(is_finite(color));
   }
 }
 
@@ -159,20 +178,32 @@ TEST_CASE("Layers are found by the names of channels, and asked for by theirs") 
   }
 }
 
-TEST_CASE("A channel that looks like a layer and is none is an error that names it") {
+TEST_CASE(
+    "A channel that looks like a layer and is none is an error, unless layers are not asked") {
   for (const auto& [channel, part] :
-       {std::pair("contribution.albedo", "give this part of the light another name"),
-        std::pair("unfiltered.a,b", "no ','"), std::pair("contribution.a=b", "no '='")}) {
+       {std::pair("contribution.albedo", "albedo is another layer of pictures"),
+        std::pair("unfiltered.a,b", "no ','"), std::pair("contribution.a=b", "no '='"),
+        std::pair("contribution.none", "none stands for layers"),
+        std::pair("unfiltered.unfiltered-input.x", "unfiltered-input.x is another layer"),
+        std::pair("contribution.t", "it is f32 x 1, and layers of the light are f32 x 3")}) {
     Layered dump(56);
     dump.options_.more = {{channel, &dump.key_}};
-    const formats::Reader reader(dump.written());
+    dump.options_.components_of_more = std::string(channel) == "contribution.t" ? 1 : 3;
+    const std::string path = dump.written();
+    const formats::Reader reader(path);
     try {
       static_cast<void>(run::light_layers(reader));
       FAIL(channel);
     } catch (const Error& error) {
-      CHECK(std::string(error.what()).find(channel) != std::string::npos);
-      CHECK(std::string(error.what()).find(part) != std::string::npos);
+      const std::string text = error.what();
+      CHECK(text.find(channel) != std::string::npos);
+      CHECK(text.find(part) != std::string::npos);
+      CHECK(text.find("psf cat --drop " + std::string(channel)) != std::string::npos);
     }
+    CHECK(run::light_layers(reader, Names{}).empty());
+    FilterRequest request = default_run();
+    request.layers = run::PictureLayers::none();
+    CHECK(filtered(path, request).size() == 2);
   }
   Layered dump(57);
   dump.options_.more = {{"contribution.", &dump.key_}, {"contributions.key", &dump.key_}};

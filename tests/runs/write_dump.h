@@ -22,6 +22,7 @@ struct DumpOptions {
   std::uint32_t shade_rate = 1;
   // Channels of three floats beside those of the records.
   std::vector<std::pair<std::string, const std::vector<Rgb>*>> more = {};
+  std::uint8_t components_of_more = 3;
 };
 
 inline void write_dump(const std::string& path, const RecordSet& set, const DumpOptions& options) {
@@ -69,7 +70,9 @@ inline void write_dump(const std::string& path, const RecordSet& set, const Dump
   add("direction", Type::f32, 3, set.direction.data());
   add("material", Type::u32, 1, set.material.data());
   add("roughness", Type::f32, 1, set.roughness.data());
-  for (const auto& [name, values] : options.more) add(name, Type::f32, 3, values->data());
+  for (const auto& [name, values] : options.more) {
+    add(name, Type::f32, options.components_of_more, values->data());
+  }
 
   formats::WriterOptions writer_options;
   writer_options.codec = options.codec;

@@ -1,6 +1,7 @@
 // Layers of the light from the renderer to a relit picture, as programs.
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <tuple>
@@ -119,6 +120,68 @@ TEST_CASE("psf filter writes the layers of the light that --layers names") {
   const Outcome refused = work.run("psf filter IN.pvb -o OUT.exr --layers moon");
   CHECK(refused.code == 2);
   CHECK(refused.err.find("normal, sun, sky") != std::string::npos);
+}
+
+TEST_CASE("A light of any name goes from the scene to the relit picture") {
+  const TempFolder folder;
+  const std::string name(60, 'n');
+  std::ofstream(folder / "room.json") << R"({
+    "cameras": [{"name": "one", "eye": [0, 1, 4], "target": [0, 1, 0], "fov": 50, "size": [16, 12]}],
+    "materials": [{"name": "grey", "kind": "diffuse", "reflectance": 0.5}],
+    "environment": {"radiance": 1},
+    "lights": [{"kind": "point", "name": ")" +
+                                             name + R"(", "position": [1, 3, 2], "intensity": 9},
+               {"kind": "point", "name": "-all of it, 100%=", "position": [-1, 3, 2], "intensity": 2}],
+    "shapes": [{"shape": "sphere", "center": [0, 1, 0], "radius": 1, "material": "grey"}]})";
+  const std::string layer = name.substr(0, 40);
+  for (const std::string& command :
+       {"psf-render " + (folder / "room.json") + " -o " + (folder / "a.pvb") +
+            " --layers lights --passes 2 --quiet",
+        "psf filter " + (folder / "a.pvb") + " -o " + (folder / "a.exr") + " --quiet",
+        "psf relight " + (folder / "a.exr") + " " + layer + "=0 _all_of_it__100__=0 -o " +
+            (folder / "sky.exr")}) {
+    const Outcome outcome = psf::tests::run(command);
+    INFO(command << "\n" << outcome.err);
+    REQUIRE(outcome.code == 0);
+  }
+  const psf::film::Image sky = psf::film::read_exr(folder / "sky.exr");
+  CHECK(is_near(sky.rgb(), sky.rgb("sky.")));
+}
+
+TEST_CASE("Of a picture with some of the layers the other light stays") {
+  const Work work("arcade.json", "lights");
+  work.must("psf filter IN.pvb -o IN.sky.exr --layers sky,sky --quiet");
+  work.must("psf relight IN.sky.exr sky=1 -o OUT.exr");
+  CHECK(work.image("OUT.exr").rgb() == work.image("IN.exr").rgb());
+  work.must("psf relight IN.sky.exr sky=0 -o OUT.exr");
+  const auto sun = work.image("IN.exr").rgb("sun."), rest = work.image("OUT.exr").rgb();
+  for (std::size_t pixel = 0; pixel < sun.size(); ++pixel) {
+    for (int c = 0; c < 3; ++c) {
+      CHECK(std::abs(sun[pixel][c] - rest[pixel][c]) <=
+            1e-6f * work.image("IN.exr").rgb()[pixel][c] + 1e-9f);
+    }
+  }
+}
+
+TEST_CASE("psf filter says which layers there are, what they share, and what they lack") {
+  const Work work("arcade.json", "lights");
+  const auto said = [&](const std::string& options) {
+    const Outcome outcome = work.run("psf filter IN.pvb -o OUT.exr --json OUT.json " + options);
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    const std::size_t at = outcome.out.find("layers     ");
+    return at == std::string::npos ? "" : outcome.out.substr(at, outcome.out.find('\n', at) - at);
+  };
+  CHECK(said("") == "layers     sun, sky");
+  CHECK(work.json("OUT.json").at("layers") == std::vector<std::string>{"sun", "sky"});
+  CHECK(said("--layers none").empty());
+  CHECK(said("--layers sun") == "layers     sun");
+  CHECK(said("--estimator adaptive") == "layers     sun, sky; with the radii of all light");
+  CHECK(said("--estimator control --sources 1/2") ==
+        "layers     sun, sky; with the beta of all light");
+  work.must("psf cat IN.pvb -o IN.less.pvb --drop contribution.sky,unfiltered.sky --quiet");
+  const Outcome less = work.run("psf filter IN.less.pvb -o OUT.exr");
+  CHECK(less.out.find("layers     sun; they are off the picture by ") != std::string::npos);
 }
 
 TEST_CASE("What psf relight cannot do is one line that says what to write") {

@@ -4,20 +4,10 @@
 #include <regex>
 #include <set>
 
+#include "core/text.h"
+
 namespace psf::manual {
 namespace {
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == separator) {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
-  return parts;
-}
 
 // On one line, as it was before it was wrapped for the terminal.
 std::string on_one_line(std::string text) {
@@ -85,12 +75,12 @@ Value parse_value(const std::string& name) {
   Value value;
   value.name = name;
   if (name.starts_with("{")) {
-    value.words = split(name.substr(1, name.size() - 2), ',');
+    value.words = core::split(name.substr(1, name.size() - 2), ',');
     value.name = name.substr(1, name.size() - 2);
     std::replace(value.name.begin(), value.name.end(), ',', '|');
     return value;
   }
-  for (const std::string& part : split(name, '|')) {
+  for (const std::string& part : core::split(name, '|')) {
     std::smatch match;
     if (std::regex_match(part, word)) {
       value.words.push_back(part);

@@ -181,6 +181,7 @@ void run(const FilterOptions& options) {
   report.uuid = dump.reader().uuid();
   report.parameters = run.parameters;
   report.cameras = dump.metadata().cameras;
+  report.has_all_layers = options.layers == "all";
   const bool quiet = options.common.quiet;
   report.written = options.follow ? filter_growing(dump, run, writer, quiet, report.outcome)
                                   : filter_all(dump, run, writer, quiet, report.outcome);

@@ -12,6 +12,8 @@
 
 #include "core/error.h"
 #include "core/standard_streams.h"
+#include "core/text.h"
+#include "film/light_layers.h"
 #include "filter/parameters/text.h"
 #include "pass_range.h"
 #include "run/missing_terms.h"
@@ -31,11 +33,9 @@ std::vector<std::uint64_t> snapshots_of(const std::string& text, std::uint64_t p
   std::vector<std::uint64_t> list;
   if (text == "pow2") {
     for (std::uint64_t n = 1; n <= passes; n *= 2) list.push_back(n);
-  } else {
-    for (std::size_t begin = 0; begin < text.size();) {
-      const std::size_t comma = std::min(text.find(',', begin), text.size());
-      list.push_back(parse_pass(text.substr(begin, comma - begin), "--snapshots"));
-      begin = comma + 1;
+  } else if (!text.empty()) {
+    for (const std::string& one : core::split(text, ',')) {
+      list.push_back(parse_pass(one, "--snapshots"));
     }
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
@@ -47,22 +47,17 @@ run::PictureLayers layers_of(const std::string& text) {
   if (text == "all") return {};
   run::PictureLayers layers = run::PictureLayers::none();
   if (text == "none") return layers;
-  const std::pair<std::string_view, bool*> names[] = {{"unfiltered-input", &layers.unfiltered},
-                                                      {"neighbors", &layers.neighbors},
-                                                      {"radius", &layers.radius},
-                                                      {"albedo", &layers.albedo},
-                                                      {"normal", &layers.normal}};
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', begin), text.size());
-    const std::string one = text.substr(begin, comma - begin);
-    const auto* const found = std::find_if(std::begin(names), std::end(names),
-                                           [&](const auto& name) { return name.first == one; });
-    if (found != std::end(names)) {
-      *found->second = true;
-    } else {
-      layers.light->push_back(one);
+  // In the order of film::kOtherLayers.
+  bool* const others[] = {&layers.unfiltered, &layers.neighbors, &layers.radius, &layers.albedo,
+                          &layers.normal};
+  std::vector<std::string>& light = *layers.light;
+  for (const std::string& name : core::split(text, ',')) {
+    const auto other = std::find(film::kOtherLayers.begin(), film::kOtherLayers.end(), name);
+    if (other != film::kOtherLayers.end()) {
+      *others[other - film::kOtherLayers.begin()] = true;
+    } else if (std::find(light.begin(), light.end(), name) == light.end()) {
+      light.push_back(name);
     }
-    begin = comma + 1;
   }
   return layers;
 }
@@ -78,8 +73,8 @@ void check_layers(const run::Dump& dump, const std::string& text,
   };
   if (layers.albedo) need("albedo", "reflectance");
   if (layers.normal) need("normal", "normal");
-  std::vector<std::string> names = {"unfiltered-input", "neighbors", "radius", "albedo", "normal"};
-  for (const run::LightLayer& layer : run::light_layers(dump.reader())) names.push_back(layer.name);
+  std::vector<std::string> names(film::kOtherLayers.begin(), film::kOtherLayers.end());
+  for (const std::string& name : run::light_layer_names(dump.reader())) names.push_back(name);
   for (const std::string& name : *layers.light) {
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
     throw Error(

@@ -24,6 +24,7 @@ struct FilterReport {
   std::vector<std::string> written;  // names of the files written
   double seconds_write = 0, seconds = 0;
   run::PeakMemory peak;
+  bool has_all_layers = true;  // of the light that the dump has
 };
 
 // Names and counts that are not 0, as "a 1, b 2", or `otherwise` where all are 0.
@@ -47,6 +48,29 @@ inline std::string weights_text(const filter::Parameters& parameters) {
   return text.empty() ? "none" : text;
 }
 
+// What is said of the layers of the light; empty: there are none.
+inline std::string layers_text(const FilterReport& report) {
+  constexpr double kOff = 1e-4;  // rounding is far below
+  std::string text;
+  double beside = 0;
+  for (const run::CameraPictures& picture : report.outcome.pictures) {
+    text = fmt::format("{}", fmt::join(picture.light_layers(), ", "));
+    beside = std::max(beside, picture.light_beside_layers());
+  }
+  if (text.empty()) return text;
+  const std::string_view of_the_whole = filter::info(report.parameters.estimator).of_the_whole;
+  if (!of_the_whole.empty()) text += fmt::format("; with the {} of all light", of_the_whole);
+  if (report.outcome.not_finite_in_layers > 0) {
+    text +=
+        fmt::format("; {} not finite, which count as 0",
+                    core::counted(report.outcome.not_finite_in_layers, "value is", "values are"));
+  }
+  if (report.has_all_layers && beside > kOff) {
+    text += fmt::format("; they are off the picture by {:.2g}% of its light", 100 * beside);
+  }
+  return text;
+}
+
 inline void print_report(const FilterReport& report) {
   const filter::Statistics& s = report.outcome.statistics;
   const filter::Parameters& p = report.parameters;
@@ -64,6 +88,8 @@ inline void print_report(const FilterReport& report) {
   line("radius", fmt::format("{}, delta {:.4g}, block {}", filter::to_text(p.radius),
                              p.radius.delta, filter::to_text(p.block)));
   line("weights", weights_text(p));
+  const std::string layers = layers_text(report);
+  if (!layers.empty()) line("layers", layers);
   const std::string in_the_ball =
       p.count_refusals && s.queries > 0
           ? fmt::format("; {:.1f} in the ball",
@@ -160,6 +186,8 @@ inline nlohmann::ordered_json to_json(const FilterReport& report) {
                  {"pictures", report.outcome.seconds_film},
                  {"write", report.seconds_write}}},
                {"files", report.written}};
+  json["layers"] = report.outcome.pictures.empty() ? std::vector<std::string>()
+                                                   : report.outcome.pictures[0].light_layers();
   const bool counted = report.parameters.count_refusals;
   json["candidates"] = counted ? Json(s.candidates) : Json(nullptr);
   json["refused"] = counted ? refused : Json(nullptr);

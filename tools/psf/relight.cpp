@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "core/error.h"
 #include "core/json_text.h"
 #include "core/parallel.h"
+#include "core/text.h"
 #include "option_values.h"
 #include "verbs.h"
 
@@ -33,12 +35,10 @@ struct RelightOptions {
 // One number, or three with commas between; none for other text.
 std::optional<Rgb> parse_weight(std::string_view text) {
   std::vector<float> values;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t comma = std::min(text.find(',', begin), text.size());
-    const auto value = parse_number<float>(text.substr(begin, comma - begin));
+  for (const std::string& part : core::split(text, ',')) {
+    const auto value = parse_number<float>(part);
     if (!value) return std::nullopt;
     values.push_back(*value);
-    begin = comma + 1;
   }
   if (values.size() == 1) return Rgb(values[0]);
   if (values.size() == 3) return Rgb(values[0], values[1], values[2]);
@@ -63,13 +63,14 @@ film::LightWeights weights_of(const std::vector<std::string>& texts) {
   return weights;
 }
 
+// The light of a picture or of a layer, negative light too.
 double light_of(const film::Image& image, const std::string& prefix) {
   double sum = 0;
-  for (const Rgb& color : image.rgb(prefix)) sum += double{luminance(color)};
+  for (const Rgb& color : image.rgb(prefix)) sum += std::abs(double{luminance(color)});
   return sum;
 }
 
-// The layers with their shares of the light.
+// The layers with their shares of the light that is written.
 Json shares_of(const film::Image& image, const film::LightWeights& weights) {
   Json rows = Json::array();
   const double all = light_of(image, "");
@@ -84,7 +85,7 @@ Json shares_of(const film::Image& image, const film::LightWeights& weights) {
 }
 
 void print(const Json& rows) {
-  fmt::print("{:<24}{:>12}  weight\n", "layer", "of the light");
+  fmt::print("{:<24}{:>12}  weight\n", "layer", "of new light");
   for (const Json& row : rows) {
     const auto weight = row.at("weight").get<std::vector<float>>();
     fmt::print("{:<24}{:>11.1f}%  {} {} {}\n", row.at("layer").get<std::string>(),

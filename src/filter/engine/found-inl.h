@@ -59,26 +59,11 @@ template <std::size_t kCount>
 HWY_INLINE void add_values(const TreeSums* sums, const Found& found, double* out) {
   VD of_nodes[kCount][3];
   for (std::size_t v = 0; v < kCount; ++v) {
-    alignas(64) double whole[3][kWidth] = {};
+    WholeSums whole;
     for (const auto& [level, family, bits, sources] : found.nodes) {
-      const double* below = sums[v].below(level, family);
-      for (std::size_t place = 0; place < kWidth; place += kLanes) {
-        const Parts parts(mask_of(bits >> place));
-        for (std::size_t c = 0; c < 3; ++c) {
-          for (std::size_t part = 0; part < kParts; ++part) {
-            const std::size_t at = place + part * kDoubles;
-            const VD value = hn::Load(kDD, below + c * kWidth + at);
-            hn::Store(add_where(parts.mask[part], hn::Load(kDD, whole[c] + at), value), kDD,
-                      whole[c] + at);
-          }
-        }
-      }
+      whole.add(sums[v].below(level, family), bits, sources);
     }
-    for (std::size_t c = 0; c < 3; ++c) {
-      double total = 0;
-      for (const double at_place : whole[c]) total += at_place;
-      of_nodes[v][c] = hn::Set(kDD, total);
-    }
+    for (std::size_t c = 0; c < 3; ++c) of_nodes[v][c] = hn::Set(kDD, whole.total(c));
   }
   for (std::size_t lane = 0; lane < kWidth; lane += kLanes) {
     VD total[kCount][3][kParts];

@@ -78,15 +78,15 @@ void add_sources(const Tree& tree, const TreeSums& sums, const WeightTerms& term
                  std::span<const std::uint32_t> parents, Packet& packet);
 
 // The same in two steps, for several values of each source: every pair is tested once. Step one
-// sets `found`, and packet.count and packet.met_itself; step two sets `out`, (values, 3, 16) sums of
-// each query, to what add_sources() makes of zeros for each value alone, bit for bit. `out` is
+// sets `found`, and packet.count and packet.met_itself; step two sets `out`, (values, 3, 16) sums
+// of each query, to what add_sources() makes of zeros for each value alone, bit for bit. `out` is
 // aligned to 64 bytes.
 void find_sources(const Tree& tree, const WeightTerms& terms,
                   std::span<const std::uint32_t> parents, Packet& packet, Found& found);
 void add_found(std::span<const TreeSums> sums, const Found& found, double* out);
 
-// Does the same as add_sources() for all radii in one walk, but adds each source to its ring in `rings`. Sets
-// packet.met_itself.
+// Does the same as add_sources() for all radii in one walk, but adds each source to its ring in
+// `rings`. Sets packet.met_itself.
 void add_to_rings(const Tree& tree, const TreeSums& sums, const WeightTerms& terms,
                   std::span<const std::uint32_t> parents, Packet& packet, const RingPacket& rings);
 

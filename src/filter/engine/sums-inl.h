@@ -87,13 +87,19 @@ class WholeSums {
     }
   }
 
+  // The sum of component c over all places.
+  [[nodiscard]] HWY_INLINE double total(std::size_t c) const {
+    double total = 0;
+    for (const double at_place : sum_[c]) total += at_place;
+    return total;
+  }
+
   // Adds these sums to those of every query of `packet`.
   HWY_INLINE void add_to(Packet& packet) const {
     if (sources_ == 0) return;
     for (std::size_t c = 0; c < 3; ++c) {
-      double total = 0;
-      for (const double at_place : sum_[c]) total += at_place;
-      for (double& sum : packet.sum[c]) sum += total;
+      const double of_nodes = total(c);
+      for (double& sum : packet.sum[c]) sum += of_nodes;
     }
     for (std::int32_t& count : packet.count) count += static_cast<std::int32_t>(sources_);
   }

@@ -44,11 +44,13 @@ constexpr EstimatorInfo kEstimators[kEstimatorCount] = {
      .meaning = "halves as control variates, unbiased",
      .refusals = kControlRefusals,
      .is_of_ball = false,
+     .of_the_whole = "beta",
      // Values, moments, the means of both, counts, and the roles of a half, whose tree is smaller.
      .bytes = 4 * sizeof(Rgb) + 3 * sizeof(float) + 1},
     {.name = "adaptive",
      .meaning = "balls whose contributions agree",
      .least_share = 1.0 / 16,
+     .of_the_whole = "radii",
      // Radii in float and in double, and luminances. Its tree for rings is freed before the tree
      // for averages is built.
      .bytes = sizeof(float) + sizeof(double) + sizeof(Rgb)},

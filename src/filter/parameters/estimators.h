@@ -44,6 +44,8 @@ struct EstimatorInfo {
   // The least share of r_i that it uses as a radius. Below 1: it chooses radii of its own, as the
   // parameter `agree` says.
   double least_share = 1;
+  // What it finds from the whole light and applies to every layer of it; "": nothing.
+  std::string_view of_the_whole = "";
   // Memory in bytes per record beside the tree over the sources, where it has one.
   std::uint64_t bytes = 0;
   bool has_tree = true;

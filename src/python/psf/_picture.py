@@ -69,9 +69,10 @@ class Picture:
         """The names of the layers of the light, which add up to the colours; empty: none."""
         return self._picture.light_layers
 
-    def relight(self, **weights: float | Sequence[float]) -> Picture:
+    def relight(self, /, **weights: float | Sequence[float]) -> Picture:
         """Each layer of the light that is named times its weight, a number or three, and the
-        colours their sum: what ``psf relight`` does. ``**{"key-light": 2}`` for other names."""
+        colours with it: what ``psf relight`` does. ``**{"key-light": 2}`` for other names.
+        A picture of ``read_picture()`` has its colours alone."""
         return Picture(self._picture.relight(
             {layer: _weight(layer, weight) for layer, weight in weights.items()}))
 

@@ -1,5 +1,5 @@
-// Layers of the light: parts of c_i and u_i that add up to them, by the lights that light comes from,
-// by its bounces, or by the lobes at x_i.
+// Layers of the light: parts of c_i and u_i that add up to them, by the lights that light comes
+// from, by its bounces, or by the lobes at x_i.
 #pragma once
 
 #include <cstddef>

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "film/light_layers.h"
 
 namespace psf::render {
 namespace {
@@ -19,6 +20,7 @@ std::string channel_name(std::string name) {
   std::replace_if(
       name.begin(), name.end(),
       [](unsigned char c) { return c >= 0x80 || (std::isalnum(c) == 0 && c != '-'); }, '_');
+  if (name.starts_with('-')) name.front() = '_';  // it would be an option
   return name;
 }
 
@@ -34,18 +36,18 @@ LayerPlan::LayerPlan(LayerKind kind, const Lights& lights) : kind_(kind) {
   if (kind != LayerKind::lights) return;
   const std::vector<std::string> sources = lights.names();
   std::map<std::string, std::size_t> numbers;
-  // Names that pictures have for other layers, and that of the sky.
-  std::vector<std::string> taken = {kSky,     "unfiltered-input", "neighbors",
-                                    "radius", "albedo",           "normal"};
+  std::vector<std::string> taken = {kSky};
   for (const std::string& source : sources) {
     const auto [found, is_new] = numbers.emplace(source, layers_.size());
     of_light_.push_back(found->second);
     if (!is_new) continue;
     const std::string stem = channel_name(source);
     std::string name = stem;
-    for (int k = 2; std::find(taken.begin(), taken.end(), name) != taken.end(); ++k) {
-      name = fmt::format("{}_{}", stem, k);
-    }
+    const auto is_taken = [&] {
+      return !film::why_no_layer_name(name).empty() ||
+             std::find(taken.begin(), taken.end(), name) != taken.end();
+    };
+    for (int k = 2; is_taken(); ++k) name = fmt::format("{}_{}", stem, k);
     taken.push_back(name);
     layers_.push_back({name});
   }
@@ -53,7 +55,7 @@ LayerPlan::LayerPlan(LayerKind kind, const Lights& lights) : kind_(kind) {
   of_light_.push_back(layers_.empty() ? 0 : layers_.size() - 1);
   if (layers_.size() > kMost) {
     throw Error(ErrorCode::usage,
-                fmt::format("`layers`: the lights have {} names, and at most {} layers are "
+                fmt::format("`layers`: lights and sky would be {} layers, and at most {} are "
                             "possible; give lights that belong together one name",
                             layers_.size(), kMost));
   }
