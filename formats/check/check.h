@@ -13,11 +13,12 @@ namespace psf::formats {
 
 struct Fault {
   std::uint64_t offset = 0;              // of the frame, or of the first page without a valid frame
-  std::string frame;                     // HEAD, SLOT, CHNK, CMIT; empty: no frame can be read
-  std::optional<std::uint64_t> chunk;    // number of the chunk, from 0
+  std::string frame;                     // HEAD, SLOT, CHNK, ...; empty: no frame can be read
+  std::optional<std::uint64_t> chunk;    // number of the chunk in its table, from 0
   std::string channel;                   // channel of the column; empty: the frame as a whole
   std::uint64_t first = 0, records = 0;  // range of lost or doubtful records; records 0: none
   std::string message;
+  std::string table = {};  // to which chunk and records belong; empty: the paths
 
   [[nodiscard]] std::string text() const;  // one line
 };
@@ -26,8 +27,9 @@ struct CheckResult {
   Head head;
   std::uint64_t file_bytes = 0, uncommitted_bytes = 0;
   std::uint64_t frames = 0, chunks = 0, columns = 0,
-                commits = 0;              // readable ones up to the last commit
-  std::uint64_t records = 0, passes = 0;  // as the last commit says
+                commits = 0;                 // readable ones up to the last commit
+  std::uint64_t records = 0, passes = 0;     // as the last commit says
+  std::vector<std::uint64_t> table_records;  // of the tables, in their order
   bool closed = false;
   std::vector<Fault> faults;  // sorted by offset
 };

@@ -133,7 +133,10 @@ class FrameCheck {
     }
     check_zeros(file_, prefix, place, prefix.length, report_);
     if (const auto index = section(walked, commit.index, "index")) {
-      merge_index(walked, decode_index(*index));
+      merge_index(walked, 0, decode_index(*index));
+    }
+    for (std::size_t k = 0; k < commit.tables.size(); ++k) {
+      merge_index(walked, k + 1, commit.tables[k].index);
     }
     const auto head = section(walked, commit.head, "copy of HEAD");
     const Frame& original = walk_.head.frame;
@@ -155,70 +158,107 @@ class FrameCheck {
     }
   }
 
-  void merge_index(const WalkedCommit& walked, const std::vector<ChunkEntry>& entries) {
+  void merge_index(const WalkedCommit& walked, std::size_t table,
+                   const std::vector<ChunkEntry>& entries) {
+    const Head& head = walk_.head.head;
     for (const ChunkEntry& entry : entries) {
       const auto [found, inserted] =
-          walk_.chunks.try_emplace(entry.offset, WalkedChunk{entry, false});
-      if (inserted || found->second.entry == entry) continue;
+          walk_.chunks.try_emplace(entry.offset, WalkedChunk{table, entry, false});
+      const WalkedChunk& other = found->second;
+      if (inserted || (other.entry == entry && other.table == table)) continue;
       add(walked.frame.prefix,
           fmt::format("its index says {} where the chunk at byte {} says {}",
-                      record_range(entry.first, entry.count), entry.offset,
-                      record_range(found->second.entry.first, found->second.entry.count)));
+                      table_range(head, table, entry.first, entry.count), entry.offset,
+                      table_range(head, other.table, other.entry.first, other.entry.count)));
     }
   }
 
+  // What was found of a table up to a place in the file.
+  struct Found {
+    std::uint64_t records = 0, chunks = 0, passes = 0;
+  };
+
   // Every record once, in order; totals of every commit.
   void check_chunks() {
-    std::uint64_t records = 0, count = 0, passes = 0;
+    std::vector<Found> found(walk_.head.head.table_count());
     auto commit = walk_.commits.begin();
     const auto pass_commits = [&](std::uint64_t until) {
       for (; commit != walk_.commits.end() && commit->frame.prefix.offset < until; ++commit) {
-        const Commit& told = commit->commit;
-        if (told.records == records && told.chunks == count && told.passes == passes) continue;
-        report_.faults.push_back(
-            {commit->frame.prefix.offset,
-             "CMIT",
-             {},
-             {},
-             records,
-             told.records > records ? told.records - records : 0,
-             fmt::format("its totals are {} records, {} chunks, {} passes; found are {}, {}, {}",
-                         told.records, told.chunks, told.passes, records, count, passes)});
+        check_totals(*commit, found);
       }
     };
     for (const auto& [offset, chunk] : walk_.chunks) {
       pass_commits(offset);
-      const ChunkEntry& entry = chunk.entry;
-      if (entry.first != records ||
-          (entry.pass != passes && entry.pass + std::uint64_t{1} != passes)) {
-        const std::uint64_t lost = entry.first > records ? entry.first - records : 0;
-        report_.faults.push_back(
-            {offset,
-             "CHNK",
-             count,
-             {},
-             records,
-             lost,
-             fmt::format("it holds {} of pass {}; expected are records from {} "
-                         "on, pass {}",
-                         record_range(entry.first, entry.count), entry.pass, records, passes)});
-      }
-      if (!chunk.readable) {
-        const FrameResult result = read_frame(file_, walk_.file_size, offset, &walk_.uuid());
-        report_.faults.push_back({offset,
-                                  "CHNK",
-                                  count,
-                                  {},
-                                  entry.first,
-                                  entry.count,
-                                  result.fault.empty() ? "its directory is wrong" : result.fault});
-        drop_region(offset);
-      }
-      records = entry.first + entry.count;
-      passes = entry.pass + std::uint64_t{1};
-      ++count;
+      const std::uint64_t passes =
+          commit == walk_.commits.end() ? std::uint64_t{1} << 32 : commit->commit.passes;
+      check_place(chunk, found[chunk.table], passes);
+      if (!chunk.readable) add_unreadable(chunk, found[chunk.table]);
+      Found& of = found[chunk.table];
+      of.records = chunk.entry.first + chunk.entry.count;
+      of.passes = chunk.entry.pass + std::uint64_t{1};
+      ++of.chunks;
     }
     pass_commits(walk_.end);
+  }
+
+  void check_totals(const WalkedCommit& walked, const std::vector<Found>& found) {
+    const Commit& told = walked.commit;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      const Found& of = found[k];
+      const std::uint64_t records = told.records_of(k), chunks = told.chunks_of(k);
+      const bool passes = k > 0 || told.passes == of.passes;
+      if (records == of.records && chunks == of.chunks && passes) continue;
+      add_fault(
+          k, {walked.frame.prefix.offset,
+              "CMIT",
+              {},
+              {},
+              of.records,
+              records > of.records ? records - of.records : 0,
+              fmt::format("its totals are {} records, {} chunks, {} passes; found are {}, {}, {}",
+                          records, chunks, told.passes, of.records, of.chunks, of.passes)});
+    }
+  }
+
+  // `passes`: those of the next commit. A pass may be without records of a table.
+  void check_place(const WalkedChunk& chunk, const Found& before, std::uint64_t passes) {
+    const ChunkEntry& entry = chunk.entry;
+    const std::uint64_t next = entry.pass + std::uint64_t{1};
+    const bool in_pass = chunk.table == 0 ? entry.pass == before.passes || next == before.passes
+                                          : next >= before.passes && next <= passes;
+    if (entry.first == before.records && in_pass) return;
+    add_fault(chunk.table,
+              {entry.offset,
+               chunk_type(chunk),
+               before.chunks,
+               {},
+               before.records,
+               entry.first > before.records ? entry.first - before.records : 0,
+               fmt::format("it holds {} of pass {}; expected are records from {} on, pass {}",
+                           record_range(entry.first, entry.count), entry.pass, before.records,
+                           chunk.table == 0 ? before.passes : passes - 1)});
+  }
+
+  void add_unreadable(const WalkedChunk& chunk, const Found& before) {
+    const ChunkEntry& entry = chunk.entry;
+    const FrameResult result = read_frame(file_, walk_.file_size, entry.offset, &walk_.uuid());
+    add_fault(chunk.table, {entry.offset,
+                            chunk_type(chunk),
+                            before.chunks,
+                            {},
+                            entry.first,
+                            entry.count,
+                            result.fault.empty() ? "its directory is wrong" : result.fault});
+    drop_region(entry.offset);
+  }
+
+  [[nodiscard]] static std::string chunk_type(const WalkedChunk& chunk) {
+    return type_name(chunk.table == 0 ? kChunkType : kTableChunkType);
+  }
+
+  void add_fault(std::size_t table, Fault fault) {
+    if (table > 0) fault.table = walk_.head.head.table_name(table);
+    report_.faults.push_back(std::move(fault));
   }
 
   void drop_region(std::uint64_t begin) {

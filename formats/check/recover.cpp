@@ -1,17 +1,19 @@
 #include "formats/check/recover.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "core/error.h"
 #include "formats/check/check_frames.h"
+#include "formats/check/column_reader.h"
 #include "formats/check/restore_head.h"
+#include "formats/check/table_passes.h"
 #include "formats/check/walk.h"
 #include "formats/layout/chunk.h"
 #include "formats/layout/file.h"
@@ -38,54 +40,6 @@ void check_other_file(const std::string& in, const std::string& out) {
                             out, name));
   }
 }
-
-// Reads the columns of chunks and finds out which are whole.
-class ColumnReader {
- public:
-  ColumnReader(const File& file, const Walk& walk) : file_(file), walk_(walk) {
-    const std::size_t channels = walk.head.head.channels.size();
-    columns_.resize(channels);
-    stored_.resize(channels);
-    decoded_.resize(channels);
-  }
-
-  // What is wrong with the columns of a chunk; nothing where columns() has them all.
-  std::vector<Fault> read(const ChunkEntry& entry, std::uint64_t number) {
-    const Head& head = walk_.head.head;
-    const FrameResult result = read_frame(file_, walk_.file_size, entry.offset, &walk_.uuid());
-    if (result.state != FrameState::whole) {
-      return {{entry.offset, "CHNK", number, {}, entry.first, entry.count, result.fault}};
-    }
-    const Chunk chunk = decode_chunk(result.frame, head);
-    std::vector<std::string> wrong(columns_.size());
-    tbb::parallel_for(std::size_t{0}, columns_.size(), [&](std::size_t k) {
-      try {
-        columns_[k] = read_stored(file_, entry.offset, chunk.columns[k], stored_[k]);
-        if (columns_[k].codec == Codec::raw) return;
-        const std::size_t size = chunk.count * head.channels[k].stride();
-        decode_zstd(columns_[k].bytes, columns_[k].filter, decoded_[k].get(size));
-      } catch (const Error& error) {
-        if (error.code() == ErrorCode::io) throw;
-        wrong[k] = error.what();
-      }
-    });
-    std::vector<Fault> faults;
-    for (std::size_t k = 0; k < wrong.size(); ++k) {
-      if (wrong[k].empty()) continue;
-      faults.push_back({entry.offset, "CHNK", number, head.channels[k].name, entry.first,
-                        entry.count, std::move(wrong[k])});
-    }
-    return faults;
-  }
-
-  [[nodiscard]] std::span<const EncodedColumn> columns() const { return columns_; }
-
- private:
-  const File& file_;
-  const Walk& walk_;
-  std::vector<EncodedColumn> columns_;
-  std::vector<Buffer> stored_, decoded_;
-};
 
 class Recovery {
  public:
@@ -156,35 +110,123 @@ class Recovery {
   }
 
   void copy_chunks(const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
+    tables_ = table_passes(walk_);
     ColumnReader reader(file_, walk_);
     std::uint64_t next = 0, number = 0;  // record, chunk
-    std::optional<std::uint32_t> pass;
+    std::uint32_t before = 0;            // pass of the chunk before
+    // That of the last chunk that was saved, and the same until its tables are.
+    std::optional<std::uint32_t> pass, unfinished;
     for (const auto& [offset, walked] : walk_.chunks) {
-      const ChunkEntry& entry = walked.entry;
       if (progress) progress(offset, limit_);
+      if (walked.table > 0) continue;
+      const ChunkEntry& entry = walked.entry;
       if (entry.first < next || entry.first + entry.count < entry.first) {
         lose({offset, "CHNK", number, {}, entry.first, 0, "its records are those of another"});
+        broken_.insert({before, entry.pass});
         continue;
       }
-      if (entry.first > next) lose_range(next, entry.first, offset);
+      if (entry.first > next) {
+        lose_range(next, entry.first, offset);
+        broken_.insert({before, entry.pass});
+      }
       next = entry.first + entry.count;
-      if (!walked.readable) {
-        lose({offset, "CHNK", number++, {}, entry.first, entry.count, "its frame cannot be read"});
-        continue;
+      before = entry.pass;
+      if (unfinished && *unfinished != entry.pass) {
+        copy_tables(*unfinished, reader);
+        unfinished.reset();
       }
-      const std::vector<Fault> faults = reader.read(entry, number++);
-      report_.faults.insert(report_.faults.end(), faults.begin(), faults.end());
-      if (!faults.empty()) {
-        lose(faults.front());
-        continue;
-      }
+      if (!is_saved(walked, number++, reader)) continue;
       if (pass && *pass != entry.pass) appender_->commit({});
-      pass = entry.pass;
-      appender_->add_chunk(entry.count, reader.columns());
+      pass = unfinished = entry.pass;
+      appender_->add_chunk(0, entry.count, reader.columns());
       ++report_.chunks_saved;
     }
     const std::uint64_t total = walk_.commits.empty() ? 0 : walk_.commits.back().commit.records;
-    if (total > next) lose_range(next, total, walk_.end);
+    if (total > next) {
+      lose_range(next, total, walk_.end);
+      broken_.insert(before);
+    }
+    if (unfinished) copy_tables(*unfinished, reader);
+    lose_table_passes();
+  }
+
+  // Whether a chunk of the paths, whose columns `reader` then has, can be saved.
+  bool is_saved(const WalkedChunk& walked, std::uint64_t number, ColumnReader& reader) {
+    const ChunkEntry& entry = walked.entry;
+    const std::vector<Fault> faults =
+        walked.readable ? reader.read(walked, number) : std::vector<Fault>();
+    report_.faults.insert(report_.faults.end(), faults.begin(), faults.end());
+    if (walked.readable && faults.empty()) return true;
+    broken_.insert(entry.pass);
+    lose(walked.readable ? faults.front()
+                         : Fault{entry.offset,
+                                 "CHNK",
+                                 number,
+                                 {},
+                                 entry.first,
+                                 entry.count,
+                                 "its frame cannot be read"});
+    return false;
+  }
+
+  // Saves the records that tables have of a pass whose paths are all saved: each table's as a whole
+  // or not at all, README.md, "Recovery".
+  void copy_tables(std::uint32_t pass, ColumnReader& reader) {
+    if (broken_.contains(pass)) return;
+    for (std::size_t k = 0; k < tables_.size(); ++k) {
+      const auto found = tables_[k].passes.find(pass);
+      if (found == tables_[k].passes.end() || !is_whole(found->second, reader)) continue;
+      for (const TablePass::Numbered& of : found->second.chunks) {
+        static_cast<void>(reader.read(of.chunk, of.number));
+        appender_->add_chunk(k + 1, of.chunk.entry.count, reader.columns());
+        ++report_.chunks_saved;
+      }
+      found->second.taken = true;
+    }
+  }
+
+  // Whether all columns of it are, too. What is wrong is added to the report.
+  bool is_whole(const TablePass& pass, ColumnReader& reader) {
+    bool whole = pass.whole;
+    for (const TablePass::Numbered& of : pass.chunks) {
+      if (!of.chunk.readable) continue;
+      const std::vector<Fault> faults = reader.read(of.chunk, of.number);
+      report_.faults.insert(report_.faults.end(), faults.begin(), faults.end());
+      whole = whole && faults.empty();
+    }
+    return whole;
+  }
+
+  void lose_table_passes() {
+    for (std::size_t k = 0; k < tables_.size(); ++k) {
+      for (Fault& gap : tables_[k].gaps) lose(std::move(gap));
+      for (const auto& [number, pass] : tables_[k].passes) {
+        if (!pass.taken && !is_unfinished(number)) lose_table_pass(k, number, pass);
+      }
+    }
+    std::stable_sort(report_.losses.begin(), report_.losses.end(),
+                     [](const Fault& a, const Fault& b) { return a.offset < b.offset; });
+  }
+
+  // Whether it was asked for although it is not committed, so that nothing is lost with it.
+  [[nodiscard]] bool is_unfinished(std::uint32_t pass) const {
+    return options_.uncommitted &&
+           (walk_.commits.empty() || pass >= walk_.commits.back().commit.passes);
+  }
+
+  void lose_table_pass(std::size_t table, std::uint32_t number, const TablePass& pass) {
+    const ChunkEntry &first = pass.chunks.front().chunk.entry,
+                     &last = pass.chunks.back().chunk.entry;
+    lose({first.offset,
+          type_name(kTableChunkType),
+          pass.chunks.front().number,
+          {},
+          first.first,
+          last.first + last.count - first.first,
+          fmt::format(
+              "pass {} of it is left out: {}", number,
+              broken_.contains(number) ? "paths of this pass are lost" : "a part of it is lost"),
+          walk_.head.head.tables[table].name});
   }
 
   void lose_range(std::uint64_t first, std::uint64_t last, std::uint64_t before) {
@@ -192,7 +234,7 @@ class Recovery {
   }
 
   void lose(Fault fault) {
-    report_.records_lost += fault.records;
+    if (fault.table.empty()) report_.records_lost += fault.records;
     report_.losses.push_back(std::move(fault));
   }
 
@@ -276,6 +318,8 @@ class Recovery {
   std::uint64_t committed_ = 0;  // see committed_end()
   std::uint64_t limit_ = 0;      // what lies from here on is not taken
   std::unique_ptr<Appender> appender_;
+  std::vector<TablePasses> tables_;
+  std::set<std::uint32_t> broken_;  // passes of which paths are lost
   RecoverResult report_;
 };
 

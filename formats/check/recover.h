@@ -17,7 +17,7 @@ struct RecoverOptions {
 
 struct RecoverResult {
   std::uint64_t records_saved = 0, chunks_saved = 0, passes_saved = 0;
-  std::uint64_t records_lost = 0;       // committed records that were not saved
+  std::uint64_t records_lost = 0;       // committed paths that were not saved
   std::uint64_t uncommitted_bytes = 0;  // not saved; normal after a kill
   bool head_restored = false;           // HEAD was unreadable; a commit's copy was used
   std::vector<Fault> faults;            // faults of the input, as check() finds them, by offset
@@ -27,7 +27,8 @@ struct RecoverResult {
   [[nodiscard]] bool nothing_lost() const { return losses.empty(); }
 };
 
-// Copies the chunks of `in` whose columns are all whole to `out`, as they are stored. `out` gets a
+// Copies the chunks of `in` whose columns are all whole to `out`, as they are stored; of a table
+// those of passes that are all whole, where all paths of the pass are, too. `out` gets a
 // new uuid and one commit per pass, and is closed. Where some are missing, records and passes get
 // new numbers. Where nothing is lost the resume state is kept, so that the producer can go on.
 // `out` is read and checked before it gets its name. Calls `progress(done, total)` with bytes, from

@@ -15,7 +15,7 @@ namespace {
 
 // What stood at the start of the file, from the section of a commit; throws Error where it is none.
 HeadFrame head_of(const File& file, const Frame& frame) {
-  const std::vector<std::byte> copy = read_section(file, frame, decode_commit(frame).head);
+  const std::vector<std::byte> copy = read_section(file, frame, decode_commit(frame, 0).head);
   if (copy.size() < kPrefix) throw Error(ErrorCode::bad_input, "too short");
   HeadFrame result;
   Prefix& prefix = result.frame.prefix;

@@ -20,13 +20,13 @@ void visit(Walk& walk, Frame frame) {
   walk.frames.push_back(prefix);
   check_skippable(prefix, walk.head.head);
   try {
-    if (prefix.type == kChunkType) {
+    if (is_chunk(prefix.type, walk.head.head)) {
       const Chunk chunk = decode_chunk(frame, walk.head.head);
       walk.chunks[prefix.offset] = {
-          {prefix.offset, prefix.length, chunk.first, chunk.count, chunk.pass}, true};
+          chunk.table, {prefix.offset, prefix.length, chunk.first, chunk.count, chunk.pass}, true};
     } else if (prefix.type == kCommitType) {
-      const Commit commit = decode_commit(frame);
-      walk.commits.push_back({std::move(frame), commit});
+      Commit commit = decode_commit(frame, walk.head.head.tables.size());
+      walk.commits.push_back({std::move(frame), std::move(commit)});
     } else if (prefix.type == kHeadType) {
       fail("a second HEAD");
     }

@@ -15,6 +15,7 @@
 namespace psf::formats {
 
 struct WalkedChunk {
+  std::size_t table = 0;  // as Head::schema() counts
   ChunkEntry entry;
   bool readable = false;  // the frame is readable; its columns are still to be checked
 };
@@ -36,7 +37,7 @@ struct Walk {
   std::uint64_t end = 0;       // end of the last commit; 0: there is no commit
   std::vector<Prefix> frames;  // prefixes of all valid frames except HEAD
   std::vector<WalkedCommit> commits;
-  std::map<std::uint64_t, WalkedChunk> chunks;  // by offset
+  std::map<std::uint64_t, WalkedChunk> chunks;  // of paths and tables, by offset
   std::vector<Region> bad;
   std::vector<Fault> faults;
 

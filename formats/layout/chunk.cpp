@@ -66,7 +66,19 @@ void read_checked(const File& file, std::uint64_t frame_offset, const Column& co
   if (!crc_matches(crc, column.crc)) refuse("its checksum is wrong");
 }
 
+void check_range(const Chunk& chunk, const Schema& schema) {
+  if (chunk.count < 1 || chunk.count > schema.chunk_capacity ||
+      chunk.first + chunk.count < chunk.first) {
+    refuse(fmt::format("{} records from {} on; 1 to {} are possible", chunk.count, chunk.first,
+                       schema.chunk_capacity));
+  }
+}
+
 }  // namespace
+
+bool is_chunk(std::uint32_t frame_type, const Head& head) {
+  return frame_type == kChunkType || (frame_type == kTableChunkType && !head.tables.empty());
+}
 
 std::vector<std::byte> encode_chunk(const Chunk& chunk) {
   ByteWriter out;
@@ -74,6 +86,7 @@ std::vector<std::byte> encode_chunk(const Chunk& chunk) {
   out.put(chunk.count);
   out.put(chunk.pass);
   out.put(static_cast<std::uint32_t>(chunk.columns.size()));
+  out.put(static_cast<std::uint32_t>(chunk.table));
   out.put_zeros(kChunkFixed - out.bytes().size());
   for (const Column& column : chunk.columns) {
     out.put(column.channel);
@@ -87,7 +100,7 @@ std::vector<std::byte> encode_chunk(const Chunk& chunk) {
 }
 
 Chunk decode_chunk(const Frame& frame, const Head& head) {
-  if (frame.prefix.type != kChunkType) {
+  if (!is_chunk(frame.prefix.type, head)) {
     refuse(fmt::format("a frame {} stands in its place", type_name(frame.prefix.type)));
   }
   ByteReader in(frame.directory);
@@ -96,19 +109,23 @@ Chunk decode_chunk(const Frame& frame, const Head& head) {
   chunk.count = in.get<std::uint32_t>();
   chunk.pass = in.get<std::uint32_t>();
   const std::size_t columns = in.get<std::uint32_t>();
-  in.skip(kChunkFixed - 20);
-  if (chunk.count < 1 || chunk.count > head.chunk_capacity ||
-      chunk.first + chunk.count < chunk.first) {
-    refuse(fmt::format("{} records from {} on; 1 to {} are possible", chunk.count, chunk.first,
-                       head.chunk_capacity));
+  const std::size_t table = in.get<std::uint32_t>();
+  in.skip(kChunkFixed - 24);
+  if (frame.prefix.type == kTableChunkType) {
+    if (table < 1 || table >= head.table_count()) {
+      refuse(fmt::format("it is of table {}; there are {}", table, head.tables.size()));
+    }
+    chunk.table = table;
   }
-  if (columns != head.channels.size()) {
-    refuse(fmt::format("{} columns for {} channels", columns, head.channels.size()));
+  const Schema& schema = head.schema(chunk.table);
+  check_range(chunk, schema);
+  if (columns != schema.channels.size()) {
+    refuse(fmt::format("{} columns for {} channels", columns, schema.channels.size()));
   }
   std::uint64_t from = kPrefix + frame.directory.size();
   for (std::size_t k = 0; k < columns; ++k) {
     const Column column = decode_column(in);
-    const Channel& channel = head.channels[k];
+    const Channel& channel = schema.channels[k];
     try {
       if (column.channel != k)
         refuse(fmt::format("its column belongs to channel {}", column.channel));
@@ -141,6 +158,12 @@ void read_column(const File& file, std::uint64_t frame_offset, const Column& col
 std::string record_range(std::uint64_t first, std::uint64_t count) {
   if (count == 1) return fmt::format("record {}", first);
   return fmt::format("records {}-{}", first, first + count - 1);
+}
+
+std::string table_range(const Head& head, std::size_t table, std::uint64_t first,
+                        std::uint64_t count) {
+  const std::string range = record_range(first, count);
+  return table == 0 ? range : fmt::format("table {}: {}", head.table_name(table), range);
 }
 
 }  // namespace psf::formats

@@ -1,4 +1,5 @@
-// The directory of the frame CHNK: the range of its records, and the place of each column.
+// The directory of the frames CHNK and TCHK: the range of its records, and the place of each
+// column.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +16,15 @@
 namespace psf::formats {
 
 struct Chunk {
-  std::uint64_t first = 0;  // number of the first record
+  std::size_t table = 0;    // 0: of the paths; else as Head::schema() counts
+  std::uint64_t first = 0;  // number of the first record, in its table
   std::uint32_t count = 0;
   std::uint32_t pass = 0;
   std::vector<Column> columns;  // one per channel, in the channels' order
 };
+
+// Whether a frame of a file is a chunk: CHNK, or TCHK where the file has tables.
+[[nodiscard]] bool is_chunk(std::uint32_t frame_type, const Head& head);
 
 [[nodiscard]] std::vector<std::byte> encode_chunk(const Chunk& chunk);
 // Throws Error{bad_input} that says what breaks the rules of version 1 (the caller adds file and
@@ -35,7 +40,10 @@ void read_column(const File& file, std::uint64_t frame_offset, const Column& col
 [[nodiscard]] EncodedColumn read_stored(const File& file, std::uint64_t frame_offset,
                                         const Column& column, Buffer& storage);
 
-// A range of records as text: "records 0-65535".
+// A range of records as text: "records 0-65535"; of a table: "table
+// vertices: records 0-65535".
 [[nodiscard]] std::string record_range(std::uint64_t first, std::uint64_t count);
+[[nodiscard]] std::string table_range(const Head& head, std::size_t table, std::uint64_t first,
+                                      std::uint64_t count);
 
 }  // namespace psf::formats

@@ -35,6 +35,63 @@ void check_section(const Frame& frame, const Section& section, std::uint64_t mos
   }
 }
 
+void put(ByteWriter& out, const ChunkEntry& entry) {
+  out.put(entry.offset);
+  out.put(entry.length);
+  out.put(entry.first);
+  out.put(entry.count);
+  out.put(entry.pass);
+}
+
+ChunkEntry get_entry(ByteReader& in) {
+  ChunkEntry entry;
+  entry.offset = in.get<std::uint64_t>();
+  entry.length = in.get<std::uint64_t>();
+  entry.first = in.get<std::uint64_t>();
+  entry.count = in.get<std::uint32_t>();
+  entry.pass = in.get<std::uint32_t>();
+  return entry;
+}
+
+void put_tables(ByteWriter& out, std::span<const TableTotals> tables) {
+  out.put(static_cast<std::uint32_t>(tables.size()));
+  out.put_zeros(4);
+  for (const TableTotals& table : tables) {
+    out.put(table.records);
+    out.put(table.chunks);
+    out.put(table.first_chunk);
+    out.put_zeros(8);
+  }
+  for (const TableTotals& table : tables) {
+    for (const ChunkEntry& entry : table.index) put(out, entry);
+  }
+}
+
+// `most`: chunks that there can be before the commit.
+std::vector<TableTotals> get_tables(ByteReader& in, std::size_t count, std::uint64_t most) {
+  std::vector<TableTotals> tables(count);
+  if (in.rest().empty()) return tables;  // a program of version 1.0 has copied the paths
+  const std::size_t told = in.get<std::uint32_t>();
+  if (told != count) refuse(fmt::format("it is of {} tables; there are {}", told, count));
+  in.skip(4);
+  for (TableTotals& table : tables) {
+    table.records = in.get<std::uint64_t>();
+    table.chunks = in.get<std::uint64_t>();
+    table.first_chunk = in.get<std::uint64_t>();
+    in.skip(8);
+  }
+  for (TableTotals& table : tables) {
+    if (table.chunks > most || table.first_chunk > table.chunks ||
+        table.chunks - table.first_chunk > in.rest().size() / kIndexEntry) {
+      refuse("the totals and the indices of its tables do not fit together");
+    }
+    for (std::uint64_t k = table.first_chunk; k < table.chunks; ++k) {
+      table.index.push_back(get_entry(in));
+    }
+  }
+  return tables;
+}
+
 }  // namespace
 
 std::vector<std::byte> encode_commit(const Commit& commit) {
@@ -53,10 +110,18 @@ std::vector<std::byte> encode_commit(const Commit& commit) {
   put(out, commit.head);
   put(out, commit.resume);
   out.put_zeros(kCommitFixed - out.bytes().size());
+  if (!commit.tables.empty()) put_tables(out, commit.tables);
   return out.take();
 }
 
-Commit decode_commit(const Frame& frame) {
+std::size_t commit_directory(const Commit& commit) {
+  if (commit.tables.empty()) return kCommitFixed;
+  std::size_t size = kCommitFixed + 8 + kTableTotals * commit.tables.size();
+  for (const TableTotals& table : commit.tables) size += kIndexEntry * table.index.size();
+  return size;
+}
+
+Commit decode_commit(const Frame& frame, std::size_t tables) {
   if (frame.prefix.type != kCommitType) {
     refuse(fmt::format("a frame {} stands in its place", type_name(frame.prefix.type)));
   }
@@ -86,6 +151,7 @@ Commit decode_commit(const Frame& frame) {
       commit.previous >= frame.prefix.offset || commit.number == 0) {
     refuse("its totals and its index do not fit together");
   }
+  if (tables > 0) commit.tables = get_tables(in, tables, frame.prefix.offset / kPage);
   return commit;
 }
 
@@ -98,31 +164,19 @@ std::vector<std::byte> read_section(const File& file, const Frame& frame, const 
 
 std::vector<std::byte> encode_index(std::span<const ChunkEntry> entries) {
   ByteWriter out;
-  for (const ChunkEntry& entry : entries) {
-    out.put(entry.offset);
-    out.put(entry.length);
-    out.put(entry.first);
-    out.put(entry.count);
-    out.put(entry.pass);
-  }
+  for (const ChunkEntry& entry : entries) put(out, entry);
   return out.take();
 }
 
 std::vector<ChunkEntry> decode_index(std::span<const std::byte> bytes) {
   std::vector<ChunkEntry> entries(bytes.size() / kIndexEntry);
   ByteReader in(bytes);
-  for (ChunkEntry& entry : entries) {
-    entry.offset = in.get<std::uint64_t>();
-    entry.length = in.get<std::uint64_t>();
-    entry.first = in.get<std::uint64_t>();
-    entry.count = in.get<std::uint32_t>();
-    entry.pass = in.get<std::uint32_t>();
-  }
+  for (ChunkEntry& entry : entries) entry = get_entry(in);
   return entries;
 }
 
 void place_sections(Commit& commit) {
-  std::uint64_t place = align_up(kPrefix + kCommitFixed, kAlignment);
+  std::uint64_t place = align_up(kPrefix + commit_directory(commit), kAlignment);
   for (Section* section : {&commit.index, &commit.head, &commit.resume}) {
     section->offset = place;
     place = align_up(place + section->length, kAlignment);

@@ -18,6 +18,13 @@ struct Section {
   std::uint32_t crc = 0;
 };
 
+// What a commit says of a table beside the paths.
+struct TableTotals {
+  std::uint64_t records = 0, chunks = 0;  // numbers in the table so far
+  std::uint64_t first_chunk = 0;          // number, from 0, of the first chunk of `index`
+  std::vector<ChunkEntry> index;          // chunks - first_chunk of them
+};
+
 struct Commit {
   std::uint32_t flags = 0;
   std::uint64_t number = 0;                           // from 1
@@ -27,12 +34,24 @@ struct Commit {
   std::uint64_t first_chunk = 0;  // number, from 0, of the first chunk of this index
   std::uint64_t foreign_required = 0;  // number so far of frames of other, required types
   Section index, head, resume;
+  std::vector<TableTotals> tables;  // those of Head::tables
+
+  // The same numbers by table as Head::schema() counts them: 0 for the paths.
+  [[nodiscard]] std::uint64_t records_of(std::size_t table) const {
+    return table == 0 ? records : tables[table - 1].records;
+  }
+  [[nodiscard]] std::uint64_t chunks_of(std::size_t table) const {
+    return table == 0 ? chunks : tables[table - 1].chunks;
+  }
+  [[nodiscard]] std::uint64_t first_chunk_of(std::size_t table) const {
+    return table == 0 ? first_chunk : tables[table - 1].first_chunk;
+  }
 };
 
 [[nodiscard]] std::vector<std::byte> encode_commit(const Commit& commit);
-// Throws Error{bad_input} that says what breaks the rules of version 1. The sections of the result
-// lie within the frame and within the limits.
-[[nodiscard]] Commit decode_commit(const Frame& frame);
+// Decodes a commit of a file with so many tables. Throws Error{bad_input} that says what breaks the
+// rules of version 1. The sections of the result lie within the frame and within the limits.
+[[nodiscard]] Commit decode_commit(const Frame& frame, std::size_t tables);
 
 // Throws Error{bad_input} where the checksum is wrong.
 [[nodiscard]] std::vector<std::byte> read_section(const File& file, const Frame& frame,
@@ -40,6 +59,9 @@ struct Commit {
 
 [[nodiscard]] std::vector<std::byte> encode_index(std::span<const ChunkEntry> entries);
 [[nodiscard]] std::vector<ChunkEntry> decode_index(std::span<const std::byte> bytes);
+
+// The length of what encode_commit() gives, which has the limit kMaxDirectory.
+[[nodiscard]] std::size_t commit_directory(const Commit& commit);
 
 // place_sections() sets the offsets of the sections from their lengths, in the order index, HEAD,
 // resume state; commit_length() is the length of the frame.

@@ -53,22 +53,46 @@ std::string to_text(const Channel& channel) {
                      channel.encoding == Encoding::octahedral ? " octahedral" : "");
 }
 
+std::string to_text(const Table& table) {
+  std::string channels;
+  for (const Channel& channel : table.channels) {
+    channels += (channels.empty() ? "" : ", ") + to_text(channel);
+  }
+  return fmt::format("{} ({})", table.name, channels);
+}
+
 bool is_required_channel(std::string_view name) {
   const ChannelInfo* channel = channel_info(name);
   return channel != nullptr && channel->required;
 }
 
-std::optional<std::size_t> Head::find(std::string_view channel) const {
+std::optional<std::size_t> Schema::find(std::string_view channel) const {
   for (std::size_t k = 0; k < channels.size(); ++k) {
     if (channels[k].name == channel) return k;
   }
   return std::nullopt;
 }
 
-std::size_t Head::stride() const {
+std::size_t Schema::stride() const {
   std::size_t bytes = 0;
   for (const Channel& channel : channels) bytes += channel.stride();
   return bytes;
+}
+
+const Schema& Head::schema(std::size_t table) const {
+  if (table == 0) return *this;
+  return tables.at(table - 1);
+}
+
+std::string_view Head::table_name(std::size_t table) const {
+  return table == 0 ? kPaths : std::string_view(tables.at(table - 1).name);
+}
+
+std::optional<std::size_t> Head::find_table(std::string_view name) const {
+  for (std::size_t k = 0; k < table_count(); ++k) {
+    if (table_name(k) == name) return k;
+  }
+  return std::nullopt;
 }
 
 namespace {
@@ -81,13 +105,15 @@ bool is_printable(std::string_view name) {
   return std::all_of(name.begin(), name.end(), [](char c) { return c > ' ' && c <= '~'; });
 }
 
+void validate_name(std::string_view name, std::string_view whose) {
+  if (!name.empty() && name.size() <= kChannelName && is_printable(name)) return;
+  refuse_head(ErrorCode::bad_input,
+              fmt::format("a {}'s name must be 1 to {} printable ASCII characters without spaces",
+                          whose, kChannelName));
+}
+
 void validate(const Channel& channel) {
-  if (channel.name.empty() || channel.name.size() > kChannelName || !is_printable(channel.name)) {
-    refuse_head(
-        ErrorCode::bad_input,
-        fmt::format("a channel's name must be 1 to {} printable ASCII characters without spaces",
-                    kChannelName));
-  }
+  validate_name(channel.name, "channel");
   if (size_of(channel.type) == 0) {
     refuse_head(ErrorCode::bad_input, fmt::format("channel {}: unknown type {}", channel.name,
                                                   static_cast<int>(channel.type)));
@@ -108,31 +134,56 @@ void validate(const Channel& channel) {
   }
 }
 
+void validate(const Schema& schema) {
+  if (schema.channels.empty() || schema.channels.size() > kMaxChannels) {
+    refuse_head(ErrorCode::bad_input, fmt::format("{} channels; 1 to {} are possible",
+                                                  schema.channels.size(), kMaxChannels));
+  }
+  std::set<std::string_view> names;
+  for (const Channel& channel : schema.channels) {
+    validate(channel);
+    if (!names.insert(channel.name).second) {
+      refuse_head(ErrorCode::bad_input, fmt::format("channel {} is declared twice", channel.name));
+    }
+  }
+  if (schema.chunk_capacity < 1 || schema.chunk_capacity > kMaxChunkRecords ||
+      schema.chunk_capacity * std::uint64_t{schema.stride()} > kMaxChunkBytes) {
+    refuse_head(
+        ErrorCode::limit,
+        fmt::format("chunks of {} records of {} bytes; a chunk has 1 to {} records and at most "
+                    "{} MiB",
+                    schema.chunk_capacity, schema.stride(), kMaxChunkRecords,
+                    kMaxChunkBytes >> 20));
+  }
+}
+
+void validate_tables(const Head& head) {
+  if (head.tables.size() > kMaxTables) {
+    refuse_head(ErrorCode::bad_input,
+                fmt::format("{} tables; at most {} are possible", head.tables.size(), kMaxTables));
+  }
+  std::set<std::string_view> names = {kPaths};
+  for (const Table& table : head.tables) {
+    validate_name(table.name, "table");
+    if (!names.insert(table.name).second) {
+      refuse_head(ErrorCode::bad_input, fmt::format("table {} is declared twice", table.name));
+    }
+    try {
+      validate(static_cast<const Schema&>(table));
+    } catch (const Error& error) {
+      refuse_head(error.code(), fmt::format("table {}: {}", table.name, error.what()));
+    }
+  }
+}
+
 }  // namespace
 
 void validate(const Head& head) {
   if (head.major != kMajor || (head.required_features & ~kKnownRequiredFeatures) != 0) {
     refuse_head(ErrorCode::bad_input, "the head asks for features that version 1 does not have");
   }
-  if (head.channels.empty() || head.channels.size() > kMaxChannels) {
-    refuse_head(ErrorCode::bad_input, fmt::format("{} channels; 1 to {} are possible",
-                                                  head.channels.size(), kMaxChannels));
-  }
-  std::set<std::string_view> names;
-  for (const Channel& channel : head.channels) {
-    validate(channel);
-    if (!names.insert(channel.name).second) {
-      refuse_head(ErrorCode::bad_input, fmt::format("channel {} is declared twice", channel.name));
-    }
-  }
-  if (head.chunk_capacity < 1 || head.chunk_capacity > kMaxChunkRecords ||
-      head.chunk_capacity * std::uint64_t{head.stride()} > kMaxChunkBytes) {
-    refuse_head(
-        ErrorCode::limit,
-        fmt::format("chunks of {} records of {} bytes; a chunk has 1 to {} records and at most "
-                    "{} MiB",
-                    head.chunk_capacity, head.stride(), kMaxChunkRecords, kMaxChunkBytes >> 20));
-  }
+  validate(static_cast<const Schema&>(head));
+  validate_tables(head);
   if (head.metadata.size() > kMaxMetadata) {
     refuse_head(ErrorCode::limit, fmt::format("{} bytes of metadata; at most {} are possible",
                                               head.metadata.size(), kMaxMetadata));

@@ -1,4 +1,4 @@
-// HEAD: the version, features, channels and metadata of a path-vertex buffer.
+// HEAD: the version, features, channels, tables and metadata of a path-vertex buffer.
 #pragma once
 
 #include <array>
@@ -39,25 +39,50 @@ struct Channel {
   bool operator==(const Channel&) const = default;
 };
 
-struct Head {
+// What each record of the paths, or of a table, holds.
+struct Schema {
+  std::uint32_t chunk_capacity = 65536;  // most records per chunk, 1 to 2^24
+  std::vector<Channel> channels;         // 1 to 256, unique names
+
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view channel) const;
+  [[nodiscard]] std::size_t stride() const;  // stored bytes per record, all channels
+  bool operator==(const Schema&) const = default;
+};
+
+// Records beside the paths, under the same passes: README.md, "Tables".
+struct Table : Schema {
+  std::string name;
+  bool operator==(const Table&) const = default;
+};
+
+// The name by which the records of the paths are asked for; no table has it.
+inline constexpr std::string_view kPaths = "paths";
+
+// The schema is that of the paths.
+struct Head : Schema {
   std::uint16_t major = 1;
   std::uint16_t minor = 0;
   std::uint32_t required_features = 0;
   std::uint32_t optional_features = 0;
-  std::uint32_t chunk_capacity = 65536;  // most records per chunk, 1 to 2^24
-  std::vector<Channel> channels;         // 1 to 256, unique names
-  std::string metadata = "{}";           // a JSON object, UTF-8, at most 1 MiB; see metadata.h
-  // HEAD's 40 reserved bytes and the bytes behind the metadata, where later minor versions may put
-  // values. They mean nothing here and are kept when copying.
+  std::string metadata = "{}";  // a JSON object, UTF-8, at most 1 MiB; see metadata.h
+  std::vector<Table> tables;    // at most 16, unique names; with any, the file is of version 1.1
+  // HEAD's 40 reserved bytes and the bytes behind metadata and tables, where later minor versions
+  // may put values. They mean nothing here and are kept when copying.
   std::array<std::byte, 40> later_fields{};
   std::vector<std::byte> later_bytes;
 
-  [[nodiscard]] std::optional<std::size_t> find(std::string_view channel) const;
-  [[nodiscard]] std::size_t stride() const;  // stored bytes per record, all channels
+  // Tables by number: the paths are 0, `tables` follow from 1 on.
+  [[nodiscard]] std::size_t table_count() const { return 1 + tables.size(); }
+  [[nodiscard]] const Schema& schema(std::size_t table) const;
+  [[nodiscard]] std::string_view table_name(std::size_t table) const;
+  [[nodiscard]] std::optional<std::size_t> find_table(std::string_view name) const;
 };
 
 // A channel as text: "normal u16 x 2 octahedral".
 [[nodiscard]] std::string to_text(const Channel& channel);
+
+// A table as text: "vertices (path u32 x 1, position f32 x 3)".
+[[nodiscard]] std::string to_text(const Table& table);
 
 // Whether every dump must have the channel: README.md, "Channels".
 [[nodiscard]] bool is_required_channel(std::string_view name);

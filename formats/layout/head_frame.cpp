@@ -12,20 +12,73 @@
 namespace psf::formats {
 namespace {
 
-Channel decode_channel(ByteReader& in) {
+void encode_name(std::string_view name, ByteWriter& out) {
+  out.put_bytes(std::as_bytes(std::span(name)));
+  out.put_zeros(kChannelName - name.size());
+}
+
+std::string decode_name(ByteReader& in, std::string_view whose) {
   const std::span<const std::byte> bytes = in.get_bytes(kChannelName);
-  const std::string_view name(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  Channel channel;
-  channel.name = name.substr(0, name.find('\0'));
-  if (name.find_first_not_of('\0', channel.name.size()) != std::string_view::npos) {
-    throw Error(ErrorCode::bad_input, "HEAD: a channel's name is not padded with zeros");
+  const std::string_view padded(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::string_view name = padded.substr(0, padded.find('\0'));
+  if (padded.find_first_not_of('\0', name.size()) != std::string_view::npos) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("HEAD: a {}'s name is not padded with zeros", whose));
   }
+  return std::string(name);
+}
+
+void encode_channels(std::span<const Channel> channels, ByteWriter& out) {
+  for (const Channel& channel : channels) {
+    encode_name(channel.name, out);
+    out.put(static_cast<std::uint8_t>(channel.type));
+    out.put(channel.components);
+    out.put(static_cast<std::uint8_t>(channel.encoding));
+    out.put_zeros(kChannelEntry - kChannelName - 3);
+  }
+}
+
+Channel decode_channel(ByteReader& in) {
+  Channel channel;
+  channel.name = decode_name(in, "channel");
   // A value out of range is found by validate().
   channel.type = static_cast<Type>(in.get<std::uint8_t>());
   channel.components = in.get<std::uint8_t>();
   channel.encoding = static_cast<Encoding>(in.get<std::uint8_t>());
   in.skip(kChannelEntry - kChannelName - 3);
   return channel;
+}
+
+void encode_tables(std::span<const Table> tables, ByteWriter& out) {
+  out.put(static_cast<std::uint32_t>(tables.size()));
+  out.put_zeros(4);
+  for (const Table& table : tables) {
+    encode_name(table.name, out);
+    out.put(table.chunk_capacity);
+    out.put(static_cast<std::uint32_t>(table.channels.size()));
+    encode_channels(table.channels, out);
+  }
+}
+
+std::vector<Table> decode_tables(ByteReader& in) {
+  const std::size_t count = in.get<std::uint32_t>();
+  in.skip(4);
+  if (count < 1 || count > kMaxTables) {
+    throw Error(ErrorCode::limit,
+                fmt::format("HEAD: {} tables; 1 to {} are possible", count, kMaxTables));
+  }
+  std::vector<Table> tables(count);
+  for (Table& table : tables) {
+    table.name = decode_name(in, "table");
+    table.chunk_capacity = in.get<std::uint32_t>();
+    const std::size_t channels = in.get<std::uint32_t>();
+    if (channels > kMaxChannels) {
+      throw Error(ErrorCode::limit,
+                  fmt::format("HEAD: a table of {} channels; at most {}", channels, kMaxChannels));
+    }
+    for (std::size_t k = 0; k < channels; ++k) table.channels.push_back(decode_channel(in));
+  }
+  return tables;
 }
 
 [[noreturn]] void refuse_layout(const Head& head, const std::string& why) {
@@ -40,22 +93,17 @@ Channel decode_channel(ByteReader& in) {
 std::vector<std::byte> encode_head(const Head& head) {
   ByteWriter out;
   out.put(head.major);
-  out.put(head.minor);
+  out.put(head.tables.empty() ? head.minor : std::max(head.minor, kMinor));
   out.put(head.required_features);
-  out.put(head.optional_features);
+  const std::uint32_t others = head.optional_features & ~kTablesFeature;
+  out.put(others | (head.tables.empty() ? 0 : kTablesFeature));
   out.put(head.chunk_capacity);
   out.put(static_cast<std::uint32_t>(head.channels.size()));
   out.put(static_cast<std::uint32_t>(head.metadata.size()));
   out.put_bytes(head.later_fields);
-  for (const Channel& channel : head.channels) {
-    out.put_bytes(std::as_bytes(std::span(channel.name)));
-    out.put_zeros(kChannelName - channel.name.size());
-    out.put(static_cast<std::uint8_t>(channel.type));
-    out.put(channel.components);
-    out.put(static_cast<std::uint8_t>(channel.encoding));
-    out.put_zeros(kChannelEntry - kChannelName - 3);
-  }
+  encode_channels(head.channels, out);
   out.put_bytes(std::as_bytes(std::span(head.metadata)));
+  if (!head.tables.empty()) encode_tables(head.tables, out);
   out.put_bytes(head.later_bytes);
   return out.take();
 }
@@ -85,6 +133,10 @@ Head decode_head(std::span<const std::byte> directory) {
   for (std::size_t k = 0; k < channels; ++k) head.channels.push_back(decode_channel(in));
   const std::span<const std::byte> text = in.get_bytes(metadata);
   head.metadata.assign(reinterpret_cast<const char*>(text.data()), text.size());
+  if ((head.optional_features & kTablesFeature) != 0) {
+    head.tables = decode_tables(in);
+    head.optional_features &= ~kTablesFeature;  // `tables` say it, and nothing else
+  }
   const std::span<const std::byte> rest = in.rest();
   head.later_bytes.assign(rest.begin(), rest.end());
   validate(head);

@@ -15,8 +15,9 @@ static_assert(std::endian::native == std::endian::little,
 
 constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'P', 'V', 'B', 0x0D, 0x0A, 0x1A, 0x01};
 constexpr std::uint16_t kMajor = 1;
-constexpr std::uint16_t kMinor = 0;
+constexpr std::uint16_t kMinor = 1;  // of a file with tables; others are of version 1.0
 constexpr std::uint32_t kKnownRequiredFeatures = 0;
+constexpr std::uint32_t kTablesFeature = 2;  // optional
 
 constexpr std::size_t kPage = 4096;     // frames start at multiples of it and are padded to them
 constexpr std::size_t kPrefix = 64;     // size of a frame's prefix
@@ -31,6 +32,7 @@ constexpr std::uint32_t frame_type(const char (&name)[5]) {
 constexpr std::uint32_t kHeadType = frame_type("HEAD");
 constexpr std::uint32_t kSlotType = frame_type("SLOT");
 constexpr std::uint32_t kChunkType = frame_type("CHNK");
+constexpr std::uint32_t kTableChunkType = frame_type("TCHK");
 constexpr std::uint32_t kCommitType = frame_type("CMIT");
 constexpr std::uint32_t kRequiredFrame =
     1;  // flag: a reader that does not know the type must refuse the file
@@ -38,13 +40,14 @@ constexpr std::uint32_t kRequiredFrame =
 constexpr std::size_t kHeadFixed = 64, kChannelEntry = 64, kChannelName = 56;
 constexpr std::size_t kSlotRecord = 32, kSlotFirst = 1024, kSlotSecond = 2048;
 constexpr std::size_t kChunkFixed = 32, kColumnEntry = 24;
-constexpr std::size_t kCommitFixed = 160, kIndexEntry = 32;
+constexpr std::size_t kCommitFixed = 160, kIndexEntry = 32, kTableTotals = 32;
 constexpr std::uint32_t kClosed = 1;  // flag of a commit
 
 // These decide which earlier entries a commit repeats: see README.md, "The index".
 constexpr std::uint64_t kIndexStep = 64, kIndexLeap = 4096;
 
-constexpr std::size_t kMaxChannels = 256;
+constexpr std::size_t kMaxChannels = 256;  // of the paths, and of each table
+constexpr std::size_t kMaxTables = 16;
 constexpr std::size_t kMaxComponents = 16;
 constexpr std::uint32_t kMaxChunkRecords = 1u << 24;
 constexpr std::uint64_t kMaxChunkBytes = 1ull << 30;  // decoded, all columns together

@@ -33,6 +33,12 @@ ChunkEntry entry_of(const Frame& frame, const Chunk& chunk) {
   return {frame.prefix.offset, frame.prefix.length, chunk.first, chunk.count, chunk.pass};
 }
 
+std::vector<std::uint64_t> chunks_up_to(const Commit& commit) {
+  std::vector<std::uint64_t> chunks = {commit.chunks};
+  for (const TableTotals& table : commit.tables) chunks.push_back(table.chunks);
+  return chunks;
+}
+
 class Opening {
  public:
   explicit Opening(const File& file) : file_(file) { out_.file_size = file.size(); }
@@ -65,8 +71,8 @@ class Opening {
     FrameResult result = frame_at(offset);
     if (result.state != FrameState::whole) return std::nullopt;
     try {
-      const Commit commit = decode_commit(result.frame);
-      return FoundCommit{std::move(result.frame), commit};
+      Commit commit = decode_commit(result.frame, out_.head.tables.size());
+      return FoundCommit{std::move(result.frame), std::move(commit)};
     } catch (const Error&) {
       return std::nullopt;
     }
@@ -90,8 +96,8 @@ class Opening {
     hop(last_ ? last_->frame.end() : head_end_, [this](Frame& frame) {
       if (frame.prefix.type != kCommitType) return;
       try {
-        const Commit commit = decode_commit(frame);
-        last_ = FoundCommit{std::move(frame), commit};
+        Commit commit = decode_commit(frame, out_.head.tables.size());
+        last_ = FoundCommit{std::move(frame), std::move(commit)};
       } catch (const Error&) {
         // A later commit tells what is missing; without one, the slot does.
       }
@@ -134,81 +140,89 @@ class Opening {
   // The index of the last commit and of the commits that it builds on. False where one is
   // unreadable.
   bool load_index() {
-    std::vector<std::vector<ChunkEntry>> parts;
+    std::vector<std::vector<ChunkEntry>> paths;  // from the last commit to the first
+    std::vector<std::vector<TableTotals>> tables;
     FoundCommit at{out_.last, out_.commit};
     for (;;) {
       try {
-        parts.push_back(decode_index(read_section(file_, at.frame, at.commit.index)));
+        paths.push_back(decode_index(read_section(file_, at.frame, at.commit.index)));
       } catch (const Error& error) {
         if (error.code() == ErrorCode::io) throw;
         return false;
       }
+      tables.push_back(std::move(at.commit.tables));
       if (at.commit.first_chunk == 0) {
         out_.root = at.frame.prefix.offset;
-        out_.root_chunks = at.commit.chunks;
+        at.commit.tables = tables.back();
+        out_.root_chunks = chunks_up_to(at.commit);
         break;
       }
       auto base = commit_at(at.commit.base);
-      if (!base || base->commit.chunks != at.commit.first_chunk) return false;
+      if (!base || base->commit.chunks != at.commit.first_chunk ||
+          !continues(base->commit.tables, tables.back())) {
+        return false;
+      }
       at = std::move(*base);
     }
-    for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
-      out_.chunks.insert(out_.chunks.end(), part->begin(), part->end());
+    out_.chunks.assign(out_.head.table_count(), {});
+    for (std::size_t part = paths.size(); part-- > 0;) {
+      append(paths[part], out_.chunks[0]);
+      for (std::size_t k = 0; k < tables[part].size(); ++k) {
+        append(tables[part][k].index, out_.chunks[k + 1]);
+      }
     }
     return is_complete();
   }
 
-  // Whether the chunks hold every record up to the last commit, and lie one behind the other.
+  // Whether the indices of tables begin where those of the base end.
+  [[nodiscard]] static bool continues(const std::vector<TableTotals>& base,
+                                      const std::vector<TableTotals>& tables) {
+    return std::ranges::equal(base, tables, {}, &TableTotals::chunks, &TableTotals::first_chunk);
+  }
+
+  static void append(const std::vector<ChunkEntry>& from, std::vector<ChunkEntry>& to) {
+    to.insert(to.end(), from.begin(), from.end());
+  }
+
   [[nodiscard]] bool is_complete() const {
+    for (std::size_t k = 0; k < out_.chunks.size(); ++k) {
+      if (!is_complete(k)) return false;
+    }
+    return true;
+  }
+
+  // Whether the chunks of a table hold every record up to the last commit, and lie one behind the
+  // other. A pass may be without records of a table, but not without paths.
+  [[nodiscard]] bool is_complete(std::size_t table) const {
     std::uint64_t record = 0, place = head_end_, passes = 0;
-    for (const ChunkEntry& entry : out_.chunks) {
-      const bool next_pass = entry.pass == passes;
-      if (entry.first != record || entry.count < 1 || entry.count > out_.head.chunk_capacity ||
-          entry.offset < place || entry.offset % kPage != 0 ||
-          entry.offset > out_.last.prefix.offset ||
+    for (const ChunkEntry& entry : out_.chunks[table]) {
+      const std::uint64_t pass = entry.pass;
+      if (entry.first != record || entry.count < 1 ||
+          entry.count > out_.head.schema(table).chunk_capacity || entry.offset < place ||
+          entry.offset % kPage != 0 || entry.offset > out_.last.prefix.offset ||
           entry.length > out_.last.prefix.offset - entry.offset || entry.length < kPage ||
-          (!next_pass && entry.pass + std::uint64_t{1} != passes)) {
+          pass + 1 < passes || (table == 0 && pass > passes)) {
         return false;
       }
       record += entry.count;
       place = entry.offset + entry.length;
-      passes = entry.pass + std::uint64_t{1};
+      passes = pass + 1;
     }
-    return record == out_.commit.records && out_.chunks.size() == out_.commit.chunks &&
-           passes == out_.commit.passes;
+    const bool all_passes =
+        table == 0 ? passes == out_.commit.passes : passes <= out_.commit.passes;
+    return record == out_.commit.records_of(table) &&
+           out_.chunks[table].size() == out_.commit.chunks_of(table) && all_passes;
   }
 
   // A commit of the chain is damaged: puts the index together from all frames that are readable.
   void scan_index() {
-    std::map<std::uint64_t, ChunkEntry> by_record;
-    const auto take = [&](Frame& frame) {
-      try {
-        if (frame.prefix.type == kChunkType) {
-          const ChunkEntry entry = entry_of(frame, decode_chunk(frame, out_.head));
-          by_record.emplace(entry.first, entry);
-        } else if (frame.prefix.type == kCommitType) {
-          const Commit commit = decode_commit(frame);
-          for (const ChunkEntry& entry : decode_index(read_section(file_, frame, commit.index))) {
-            by_record.emplace(entry.first, entry);
-          }
-        }
-      } catch (const Error& error) {
-        if (error.code() == ErrorCode::io) throw;
-      }
-    };
-    hop(head_end_, take);
-    out_.chunks.clear();
-    out_.root = out_.root_chunks = 0;
-    std::uint64_t next = 0;
+    std::vector<std::map<std::uint64_t, ChunkEntry>> by_record(out_.head.table_count());
+    hop(head_end_, [&](Frame& frame) { collect(frame, by_record); });
+    out_.chunks.assign(by_record.size(), {});
+    out_.root = 0;
     std::string missing;
-    for (const auto& [first, entry] : by_record) {
-      if (first >= out_.commit.records) break;
-      if (first > next) missing += " " + record_range(next, first - next) + ",";
-      next = std::max(next, first + entry.count);
-      out_.chunks.push_back(entry);
-    }
-    if (next < out_.commit.records) {
-      missing += " " + record_range(next, out_.commit.records - next) + ",";
+    for (std::size_t k = 0; k < by_record.size(); ++k) {
+      missing += take_records(by_record[k], k);
     }
     if (!missing.empty()) {
       missing.pop_back();
@@ -226,6 +240,49 @@ class Opening {
     }
   }
 
+  // What a frame says of chunks.
+  void collect(const Frame& frame,
+               std::vector<std::map<std::uint64_t, ChunkEntry>>& by_record) const {
+    try {
+      if (is_chunk(frame.prefix.type, out_.head)) {
+        const Chunk chunk = decode_chunk(frame, out_.head);
+        by_record[chunk.table].emplace(chunk.first, entry_of(frame, chunk));
+      } else if (frame.prefix.type == kCommitType) {
+        const Commit commit = decode_commit(frame, out_.head.tables.size());
+        for (std::size_t k = 0; k < commit.tables.size(); ++k) {
+          for (const ChunkEntry& entry : commit.tables[k].index) {
+            by_record[k + 1].emplace(entry.first, entry);
+          }
+        }
+        for (const ChunkEntry& entry : decode_index(read_section(file_, frame, commit.index))) {
+          by_record[0].emplace(entry.first, entry);
+        }
+      }
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::io) throw;
+    }
+  }
+
+  // Takes the chunks of a table up to the last commit. Returns what is missing as text.
+  std::string take_records(const std::map<std::uint64_t, ChunkEntry>& by_record,
+                           std::size_t table) {
+    const std::uint64_t records = out_.commit.records_of(table);
+    std::uint64_t next = 0;
+    std::string missing;
+    const auto miss = [&](std::uint64_t until) {
+      if (until <= next) return;
+      missing += " " + table_range(out_.head, table, next, until - next) + ",";
+    };
+    for (const auto& [first, entry] : by_record) {
+      if (first >= records) break;
+      miss(first);
+      next = std::max(next, first + entry.count);
+      out_.chunks[table].push_back(entry);
+    }
+    miss(records);
+    return missing;
+  }
+
   const File& file_;
   Opened out_;
   std::uint64_t head_end_ = 0;
@@ -236,7 +293,7 @@ class Opening {
 
 void check_skippable(const Prefix& prefix, const Head& head) {
   const bool known = prefix.type == kHeadType || prefix.type == kSlotType ||
-                     prefix.type == kChunkType || prefix.type == kCommitType;
+                     is_chunk(prefix.type, head) || prefix.type == kCommitType;
   if (known || (prefix.flags & kRequiredFrame) == 0) return;
   throw Error(ErrorCode::bad_input,
               fmt::format("written by version {}.{} of the format, with a frame {} at byte {} that "

@@ -19,10 +19,12 @@ struct Opened {
   std::uint64_t file_size = 0;  // size of the file when it was opened
   Frame last;                   // the last commit
   Commit commit;
-  std::vector<ChunkEntry> chunks;
+  std::vector<std::vector<ChunkEntry>> chunks;  // of each table; the first are those of the paths
   // The offset of the commit whose index begins with the first chunk and on which the last commit
-  // builds, and the number of chunks up to it. Both are 0 where a commit in between is unreadable.
-  std::uint64_t root = 0, root_chunks = 0;
+  // builds, and the number of chunks of each table up to it. The offset is 0 where a commit in
+  // between is unreadable.
+  std::uint64_t root = 0;
+  std::vector<std::uint64_t> root_chunks;
 };
 
 struct HeadFrame {

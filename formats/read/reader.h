@@ -1,5 +1,5 @@
-// Reads a path-vertex buffer up to its last commit: any range of records of any channel, from any
-// thread.
+// Reads a path-vertex buffer up to its last commit: any range of records of any channel of the
+// paths, and of its tables, from any thread.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +12,7 @@
 
 #include "formats/layout/entries.h"
 #include "formats/layout/head.h"
+#include "formats/read/table_reader.h"
 
 namespace psf::formats {
 
@@ -26,9 +27,7 @@ class Reader {
 
   [[nodiscard]] const std::string& path() const;
   [[nodiscard]] const Head& head() const;
-  [[nodiscard]] std::uint64_t records() const;         // number of committed records
-  [[nodiscard]] std::span<const Pass> passes() const;  // committed, in order, without gaps
-  [[nodiscard]] bool closed() const;                   // the producer has closed the file
+  [[nodiscard]] bool closed() const;  // the producer has closed the file
   [[nodiscard]] std::uint64_t uncommitted_bytes()
       const;                               // bytes after the last commit; normal after a kill
   [[nodiscard]] std::string uuid() const;  // the file's uuid as text
@@ -43,24 +42,30 @@ class Reader {
   [[nodiscard]] std::uint64_t file_bytes() const;
   // The resume state that the producer gave to its last commit.
   [[nodiscard]] std::vector<std::byte> resume_state() const;
-  [[nodiscard]] std::span<const ChunkEntry> chunks() const;  // committed, in order, without gaps
-  // The columns of a chunk, one per channel, in the channels' order. Thread-safe. Throws
-  // Error{bad_input} that names the chunk.
-  [[nodiscard]] std::vector<Column> columns(std::size_t chunk) const;
 
-  // The index of a channel. Where it is missing, throws Error{bad_input} that names the file, the
-  // channel and what needs it.
-  [[nodiscard]] std::size_t require(std::string_view channel, std::string_view wanted_by) const;
+  // The records of a table as Head::schema() counts; 0: the paths. They live as long as the reader.
+  [[nodiscard]] const TableReader& table(std::size_t number) const;
+  // Null where there is no table of this name; `paths` is one.
+  [[nodiscard]] const TableReader* find_table(std::string_view name) const;
 
-  // Reads the records [first, first + count) as stored; out.size() is count * Channel::stride().
-  // Thread-safe. Throws Error{bad_input} that names chunk, channel and records where a checksum is
-  // wrong.
+  // Those of the paths, as TableReader has them.
+  [[nodiscard]] std::uint64_t records() const { return table(0).records(); }
+  [[nodiscard]] std::span<const Pass> passes() const { return table(0).passes(); }
+  [[nodiscard]] std::span<const ChunkEntry> chunks() const { return table(0).chunks(); }
+  [[nodiscard]] std::vector<Column> columns(std::size_t chunk) const {
+    return table(0).columns(chunk);
+  }
+  [[nodiscard]] std::size_t require(std::string_view channel, std::string_view wanted_by) const {
+    return table(0).require(channel, wanted_by);
+  }
   void read(std::size_t channel, std::uint64_t first, std::size_t count,
-            std::span<std::byte> out) const;
-  // Reads records of an f16, f32, f64 or octahedral channel as floats; out.size() is count *
-  // Channel::decoded_components().
+            std::span<std::byte> out) const {
+    table(0).read(channel, first, count, out);
+  }
   void read_floats(std::size_t channel, std::uint64_t first, std::size_t count,
-                   std::span<float> out) const;
+                   std::span<float> out) const {
+    table(0).read_floats(channel, first, count, out);
+  }
 
  private:
   struct State;

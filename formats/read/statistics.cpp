@@ -33,7 +33,7 @@ void add(std::span<const T> values, Components& to) {
 }
 
 template <class T>
-void read_and_add(const Reader& reader, std::size_t channel, const ChunkEntry& entry,
+void read_and_add(const TableReader& reader, std::size_t channel, const ChunkEntry& entry,
                   Components& to) {
   std::vector<T> values(entry.count * to.size());
   if constexpr (std::is_same_v<T, float>) {
@@ -44,8 +44,8 @@ void read_and_add(const Reader& reader, std::size_t channel, const ChunkEntry& e
   add<T>(values, to);
 }
 
-void add_chunk(const Reader& reader, std::size_t k, const ChunkEntry& entry, Components& to) {
-  const Channel& channel = reader.head().channels[k];
+void add_chunk(const TableReader& reader, std::size_t k, const ChunkEntry& entry, Components& to) {
+  const Channel& channel = reader.schema().channels[k];
   if (channel.encoding != Encoding::plain) return read_and_add<float>(reader, k, entry, to);
   switch (channel.type) {
     case Type::u8:
@@ -76,10 +76,10 @@ void merge(const Components& from, Components& to) {
 
 }  // namespace
 
-std::vector<ChannelSize> channel_sizes(const Reader& reader) {
-  const Head& head = reader.head();
+std::vector<ChannelSize> channel_sizes(const TableReader& reader) {
+  const Schema& schema = reader.schema();
   const std::span<const ChunkEntry> chunks = reader.chunks();
-  std::vector<ChannelSize> sizes(head.channels.size());
+  std::vector<ChannelSize> sizes(schema.channels.size());
   for (std::size_t begin = 0; begin < chunks.size(); begin += kChunksRead) {
     const std::size_t end = std::min(begin + kChunksRead, chunks.size());
     std::vector<std::vector<Column>> columns(end - begin);
@@ -87,7 +87,7 @@ std::vector<ChannelSize> channel_sizes(const Reader& reader) {
     for (std::size_t k = begin; k < end; ++k) {
       for (const Column& column : columns[k - begin]) {
         ChannelSize& size = sizes[column.channel];
-        size.raw += chunks[k].count * std::uint64_t{head.channels[column.channel].stride()};
+        size.raw += chunks[k].count * std::uint64_t{schema.channels[column.channel].stride()};
         size.stored += column.stored;
         ++(column.codec == Codec::raw ? size.raw_columns : size.zstd_columns);
       }
@@ -97,9 +97,10 @@ std::vector<ChannelSize> channel_sizes(const Reader& reader) {
 }
 
 std::vector<ComponentStatistics> channel_statistics(
-    const Reader& reader, std::size_t channel, const std::function<void(std::size_t)>& progress) {
+    const TableReader& reader, std::size_t channel,
+    const std::function<void(std::size_t)>& progress) {
   const std::span<const ChunkEntry> chunks = reader.chunks();
-  const Components empty(reader.head().channels.at(channel).decoded_components());
+  const Components empty(reader.schema().channels.at(channel).decoded_components());
   Components total = empty;
   for (std::size_t begin = 0; begin < chunks.size(); begin += kChunksRead) {
     const std::size_t end = std::min(begin + kChunksRead, chunks.size());

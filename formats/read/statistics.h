@@ -1,4 +1,4 @@
-// Statistics of the values and the sizes of the columns of a path-vertex buffer, by channel.
+// Statistics of the values and the sizes of the columns of the paths, or of a table, by channel.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "formats/read/reader.h"
+#include "formats/read/table_reader.h"
 
 namespace psf::formats {
 
@@ -17,7 +17,7 @@ struct ChannelSize {
 };
 
 // The sizes of each channel. Reads directories only. Throws Error{bad_input} that names the chunk.
-[[nodiscard]] std::vector<ChannelSize> channel_sizes(const Reader& reader);
+[[nodiscard]] std::vector<ChannelSize> channel_sizes(const TableReader& reader);
 
 struct ComponentStatistics {
   std::uint64_t finite = 0, non_finite = 0;
@@ -32,7 +32,7 @@ struct ComponentStatistics {
 // parallel; the result is the same for any number of threads. Calls `progress` with the number of
 // chunks done, from the calling thread.
 [[nodiscard]] std::vector<ComponentStatistics> channel_statistics(
-    const Reader& reader, std::size_t channel,
+    const TableReader& reader, std::size_t channel,
     const std::function<void(std::size_t)>& progress = {});
 
 }  // namespace psf::formats

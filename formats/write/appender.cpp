@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <array>
 #include <climits>
 #include <limits>
 #include <string_view>
@@ -66,6 +68,14 @@ void check_same(const std::string& path, const Head& own, const Head& wanted) {
     refuse_appending(path, fmt::format("has other channels: as number {} {}, not {}; {}", k,
                                        name(own), name(wanted), kRemedy));
   }
+  for (std::size_t k = 0; k < std::max(own.tables.size(), wanted.tables.size()); ++k) {
+    const auto described = [k](const Head& head) {
+      return k < head.tables.size() ? to_text(head.tables[k]) : "none";
+    };
+    if (described(own) == described(wanted)) continue;
+    refuse_appending(path, fmt::format("has other tables: as number {} {}, not {}; {}", k + 1,
+                                       described(own), described(wanted), kRemedy));
+  }
   const std::string before = scene_hash_of(path, own), now = scene_hash_of(path, wanted);
   if (before != now) {
     refuse_appending(path, fmt::format("is of another scene: its scene_hash is '{}', not '{}'; {}",
@@ -114,19 +124,30 @@ std::unique_ptr<Appender> Appender::resume(const std::string& path, const Head& 
   const Prefix& last = opened.last.prefix;
   made->last_record_ = {last.offset, last.length, last.sequence};
   made->resume_ = std::move(state);
-  made->index_ = opened.chunks;
-  made->previous_ = {opened.last.prefix.offset, opened.chunks.size()};
-  if (opened.commit.number >= kIndexLeap) made->leap_ = {opened.root, opened.root_chunks};
+  for (std::size_t k = 0; k < made->tables_.size(); ++k) {
+    const std::uint64_t records = opened.commit.records_of(k);
+    made->tables_[k] = {opened.chunks[k], records, records};
+  }
+  made->previous_ = made->anchor(opened.last.prefix.offset);
+  if (opened.commit.number >= kIndexLeap && opened.root > 0) {
+    made->leap_ = {opened.root, opened.root_chunks};
+  }
   made->committed_end_ = opened.last.end();
   made->commits_ = opened.commit.number;
   made->last_flags_ = opened.commit.flags;
   made->passes_ = opened.commit.passes;
-  made->appended_ = made->committed_ = opened.commit.records;
   return made;
 }
 
 Appender::Appender(const std::string& path, const Head& head, bool sync, FrameWriter frames)
-    : path_(path), head_(head), sync_(sync), frames_(std::move(frames)) {}
+    : path_(path),
+      head_(head),
+      sync_(sync),
+      frames_(std::move(frames)),
+      tables_(head.table_count()),
+      start_(anchor(0)),
+      previous_(start_),
+      leap_(start_) {}
 
 Appender::~Appender() {
   if (!frames_) return;
@@ -149,14 +170,21 @@ void Appender::begin_writing() {
   frames_->write_slot(commits_ + 1, last_record_);
 }
 
-void Appender::add_chunk(std::uint32_t count, std::span<const EncodedColumn> columns) {
+void Appender::add_chunk(std::size_t table, std::uint32_t count,
+                         std::span<const EncodedColumn> columns) {
   begin_writing();
   if (passes_ >= std::numeric_limits<std::uint32_t>::max()) {
     throw Error(ErrorCode::limit, path_ + ": more than 2^32 - 1 passes");
   }
-  index_.push_back(
-      frames_->write_chunk(appended_, count, static_cast<std::uint32_t>(passes_), columns));
-  appended_ += count;
+  TableState& to = tables_[table];
+  to.index.push_back(frames_->write_chunk(
+      {table, to.appended, count, static_cast<std::uint32_t>(passes_), {}}, columns));
+  to.appended += count;
+}
+
+bool Appender::has_uncommitted() const {
+  return std::any_of(tables_.begin(), tables_.end(),
+                     [](const TableState& table) { return table.appended != table.committed; });
 }
 
 void Appender::commit(std::span<const std::byte> resume_state) {
@@ -164,7 +192,7 @@ void Appender::commit(std::span<const std::byte> resume_state) {
     throw Error(ErrorCode::limit, fmt::format("{}: {} bytes of resume state; at most {} fit", path_,
                                               resume_state.size(), kMaxResumeState));
   }
-  if (appended_ == committed_) {
+  if (appended() == records()) {
     throw Error(ErrorCode::usage, path_ + ": a pass without records cannot be committed");
   }
   ++passes_;
@@ -173,7 +201,7 @@ void Appender::commit(std::span<const std::byte> resume_state) {
 }
 
 void Appender::close() {
-  if (appended_ != committed_) {
+  if (has_uncommitted()) {
     throw Error(ErrorCode::usage, path_ + ": records were appended but not committed");
   }
   if (commits_ == 0) throw Error(ErrorCode::usage, path_ + ": closed without a pass");
@@ -190,33 +218,65 @@ void Appender::publish() {
   frames_.reset();
 }
 
-void Appender::write_commit(std::uint32_t flags) {
-  begin_writing();
-  const std::uint64_t number = commits_ + 1;
-  const Anchor base = flags == kClosed || number % kIndexLeap == 0 ? Anchor{}
-                      : number % kIndexStep == 0                   ? leap_
-                                                                   : previous_;
+Appender::Anchor Appender::anchor(std::uint64_t offset) const {
+  Anchor here{offset, {}};
+  for (const TableState& table : tables_) here.chunks.push_back(table.index.size());
+  return here;
+}
+
+Commit Appender::commit_on(const Anchor& base, std::uint32_t flags) const {
   Commit commit;
   commit.flags = flags;
-  commit.number = number;
-  commit.records = appended_;
-  commit.chunks = index_.size();
+  commit.number = commits_ + 1;
+  commit.records = appended();
+  commit.chunks = tables_[0].index.size();
   commit.passes = passes_;
   commit.previous = previous_.offset;
   commit.base = base.offset;
-  commit.first_chunk = base.chunks;
+  commit.first_chunk = base.chunks[0];
+  for (std::size_t k = 1; k < tables_.size(); ++k) {
+    const std::vector<ChunkEntry>& index = tables_[k].index;
+    commit.tables.push_back(
+        {tables_[k].appended,
+         index.size(),
+         base.chunks[k],
+         {index.begin() + static_cast<std::ptrdiff_t>(base.chunks[k]), index.end()}});
+  }
+  return commit;
+}
+
+// The one of the rule, README.md, "The index"; a later base where the tables' indices do not fit
+// into a directory.
+Commit Appender::next_commit(std::uint32_t flags) const {
+  const std::uint64_t number = commits_ + 1;
+  const std::array<const Anchor*, 3> bases = {&start_, &leap_, &previous_};
+  for (std::size_t k = flags == kClosed || number % kIndexLeap == 0 ? 0
+                       : number % kIndexStep == 0                   ? 1
+                                                                    : 2;
+       k < bases.size(); ++k) {
+    Commit commit = commit_on(*bases[k], flags);
+    if (commit_directory(commit) <= kMaxDirectory) return commit;
+  }
+  throw Error(ErrorCode::limit,
+              fmt::format("{}: too many chunks of tables in one pass; use larger chunks", path_));
+}
+
+void Appender::write_commit(std::uint32_t flags) {
+  begin_writing();
+  const Commit commit = next_commit(flags);
   if (sync_) frames_->file().sync();
   const SlotRecord record = frames_->write_commit(
-      commit, std::span(index_).subspan(static_cast<std::size_t>(base.chunks)), resume_);
+      commit, std::span(tables_[0].index).subspan(static_cast<std::size_t>(commit.first_chunk)),
+      resume_);
   if (sync_) frames_->file().sync();
-  frames_->write_slot(number, record);
+  frames_->write_slot(commit.number, record);
   if (!appeared_ && appear_ == Appear::first_commit) appear();
-  commits_ = number;
+  commits_ = commit.number;
   last_flags_ = flags;
-  committed_ = appended_;
+  for (TableState& table : tables_) table.committed = table.appended;
   committed_end_ = frames_->end();
-  previous_ = {record.offset, index_.size()};
-  if (number % kIndexLeap == 0) leap_ = previous_;
+  previous_ = anchor(record.offset);
+  if (commits_ % kIndexLeap == 0) leap_ = previous_;
 }
 
 void Appender::appear() {

@@ -40,8 +40,9 @@ class Appender {
   // Cuts off what is not committed; removes a file that did not appear.
   ~Appender();
 
-  // Appends a chunk of `count` records to the current pass, which began with the last commit.
-  void add_chunk(std::uint32_t count, std::span<const EncodedColumn> columns);
+  // Appends a chunk of `count` records of a table (0: the paths) to the current pass, which began
+  // with the last commit.
+  void add_chunk(std::size_t table, std::uint32_t count, std::span<const EncodedColumn> columns);
   // Ends the current pass.
   void commit(std::span<const std::byte> resume_state);
   // Commits once more, with the flag "closed". With Appear::published the file stays locked until
@@ -57,8 +58,13 @@ class Appender {
   [[nodiscard]] std::string current_path() const;                  // `path`.partial before that
   [[nodiscard]] const Head& head() const { return head_; }         // the file's own
   [[nodiscard]] bool is_open() const { return frames_ && !closed_; }
-  [[nodiscard]] std::uint64_t records() const { return committed_; }
-  [[nodiscard]] std::uint64_t appended() const { return appended_; }
+  // Numbers of records of a table.
+  [[nodiscard]] std::uint64_t records(std::size_t table = 0) const {
+    return tables_[table].committed;
+  }
+  [[nodiscard]] std::uint64_t appended(std::size_t table = 0) const {
+    return tables_[table].appended;
+  }
   [[nodiscard]] std::uint64_t passes() const { return passes_; }
   [[nodiscard]] std::uint64_t bytes() const { return frames_ ? frames_->end() : bytes_; }
   [[nodiscard]] std::span<const std::byte> resume_state() const { return resume_; }
@@ -66,11 +72,21 @@ class Appender {
  private:
   // A commit on whose index that of a later one may build: see README.md, "CMIT".
   struct Anchor {
-    std::uint64_t offset = 0, chunks = 0;
+    std::uint64_t offset = 0;
+    std::vector<std::uint64_t> chunks;  // a number a table
+  };
+  // What the file has of the paths, or of a table.
+  struct TableState {
+    std::vector<ChunkEntry> index;              // entries of all chunks
+    std::uint64_t appended = 0, committed = 0;  // numbers of records
   };
 
   Appender(const std::string& path, const Head& head, bool sync, FrameWriter frames);
   void begin_writing();
+  [[nodiscard]] bool has_uncommitted() const;
+  [[nodiscard]] Anchor anchor(std::uint64_t offset) const;
+  [[nodiscard]] Commit commit_on(const Anchor& base, std::uint32_t flags) const;
+  [[nodiscard]] Commit next_commit(std::uint32_t flags) const;
   void write_commit(std::uint32_t flags);
   void appear();
   void finish();
@@ -88,11 +104,10 @@ class Appender {
   std::optional<core::Unfinished> unfinished_;
 
   std::vector<std::byte> resume_;
-  std::vector<ChunkEntry> index_;  // entries of all chunks
-  Anchor previous_, leap_;
+  std::vector<TableState> tables_;  // the first is that of the paths
+  Anchor start_, previous_, leap_;  // start_: the index begins with the first chunk
   std::uint64_t committed_end_ = 0, bytes_ = 0;
   std::uint64_t commits_ = 0, passes_ = 0;
-  std::uint64_t appended_ = 0, committed_ = 0;  // numbers of records
 };
 
 }  // namespace psf::formats

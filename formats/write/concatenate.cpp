@@ -38,9 +38,12 @@ struct Work {
 };
 
 struct Job {
-  const Input* input;
+  const TableReader* from;
+  const File* file;
   std::size_t chunk;
   std::vector<Column> columns;  // where they lie
+
+  [[nodiscard]] const ChunkEntry& entry() const { return from->chunks()[chunk]; }
 };
 
 // An input may have the name of the output, but not the one that it has while it is written.
@@ -79,15 +82,14 @@ class Concatenation {
         total += input.reader.passes()[p].count;
     }
     for (const Input& input : inputs_) {
-      const auto chunks = input.reader.chunks();
-      for (std::size_t k = 0; k < chunks.size(); ++k) {
-        if (chunks[k].pass < input.first || chunks[k].pass >= input.last) continue;
-        jobs_.push_back({&input, k, input.reader.columns(k)});
-        const bool ends_pass = k + 1 == chunks.size() || chunks[k + 1].pass != chunks[k].pass;
-        if (!ends_pass && jobs_.size() < batch_size()) continue;
-        write_batch();
-        if (ends_pass) end_pass(input, chunks[k].pass);
-        if (progress) progress(appender_->appended(), total);
+      std::vector<std::size_t> next(head_.tables.size());  // chunk of each table
+      for (std::uint64_t pass = input.first; pass < input.last; ++pass) {
+        for (std::size_t k = 0; k < head_.tables.size(); ++k) {
+          next[k] = copy_pass(input, k, pass, next[k], [&] {
+            if (progress) progress(appender_->appended(), total);
+          });
+        }
+        end_pass(input, pass);
       }
     }
     appender_->close();
@@ -96,6 +98,25 @@ class Concatenation {
   }
 
  private:
+  // Copies the chunks that a table has of a pass; `chunk` is none behind their first. Returns the
+  // chunk behind their last.
+  template <class Progress>
+  std::size_t copy_pass(const Input& input, std::size_t table, std::uint64_t pass,
+                        std::size_t chunk, const Progress& progress) {
+    const TableReader& from = input.reader.table(head_.tables[table].source);
+    const std::span<const ChunkEntry> chunks = from.chunks();
+    while (chunk < chunks.size() && chunks[chunk].pass < pass) ++chunk;
+    for (; chunk < chunks.size() && chunks[chunk].pass == pass; ++chunk) {
+      jobs_.push_back({&from, &input.file, chunk, from.columns(chunk)});
+      if (jobs_.size() < batch_size(table)) continue;
+      write_batch(table);
+      progress();
+    }
+    write_batch(table);
+    progress();
+    return chunk;
+  }
+
   void select_passes() {
     std::uint64_t all = 0;
     for (const Input& input : inputs_) all += input.reader.passes().size();
@@ -116,43 +137,45 @@ class Concatenation {
     }
   }
 
-  [[nodiscard]] std::size_t batch_size() const {
-    const Head& head = head_.head;
-    return std::max<std::size_t>(1, kBatchBytes / (head.chunk_capacity * head.stride()));
+  [[nodiscard]] std::size_t batch_size(std::size_t table) const {
+    const Schema& schema = head_.head.schema(table);
+    return std::max<std::size_t>(1, kBatchBytes / (schema.chunk_capacity * schema.stride()));
   }
 
-  void write_batch() {
-    const std::size_t channels = head_.channels.size();
+  void write_batch(std::size_t table) {
+    const std::vector<JoinedChannel>& joined = head_.tables[table].channels;
+    const std::size_t channels = joined.size();
     if (work_.size() < jobs_.size() * channels) work_.resize(jobs_.size() * channels);
     tbb::parallel_for(std::size_t{0}, jobs_.size() * channels, [&](std::size_t k) {
-      convert(jobs_[k / channels], head_.channels[k % channels], work_[k]);
+      convert(jobs_[k / channels], joined[k % channels], work_[k]);
     });
     for (std::size_t k = 0; k < jobs_.size(); ++k) {
       std::vector<EncodedColumn> columns;
       for (std::size_t c = 0; c < channels; ++c) columns.push_back(work_[k * channels + c].column);
-      appender_->add_chunk(jobs_[k].input->reader.chunks()[jobs_[k].chunk].count, columns);
+      appender_->add_chunk(table, jobs_[k].entry().count, columns);
     }
     jobs_.clear();
   }
 
   void convert(const Job& job, const JoinedChannel& joined, Work& work) {
-    const Reader& reader = job.input->reader;
-    const ChunkEntry& entry = reader.chunks()[job.chunk];
+    const TableReader& reader = *job.from;
+    const ChunkEntry& entry = job.entry();
     const Column& column = job.columns[joined.source];
     if (!joined.quantized && column.codec == options_.codec.value_or(column.codec)) {
       try {
-        work.column = read_stored(job.input->file, entry.offset, column, work.storage);
+        work.column = read_stored(*job.file, entry.offset, column, work.storage);
       } catch (const Error& error) {
         if (error.code() == ErrorCode::io) throw;
-        throw Error(error.code(),
-                    fmt::format("{}: chunk {} ({}): channel {}: {}; 'psf recover' saves the rest",
-                                reader.path(), job.chunk, record_range(entry.first, entry.count),
-                                joined.channel.name, error.what()));
+        throw Error(
+            error.code(),
+            fmt::format("{}: {}chunk {} ({}): channel {}: {}; 'psf recover' saves the rest",
+                        job.file->path(), reader.prefix(), job.chunk,
+                        record_range(entry.first, entry.count), joined.channel.name, error.what()));
       }
       return;
     }
     const Codec codec = options_.codec.value_or(column.codec);
-    work.values.resize(entry.count * reader.head().channels[joined.source].stride());
+    work.values.resize(entry.count * reader.schema().channels[joined.source].stride());
     reader.read(joined.source, entry.first, entry.count, work.values);
     if (!joined.quantized) {
       work.column = encode_column(codec, work.values, work.storage);
@@ -181,7 +204,7 @@ class Concatenation {
     overflows_ += overflows;
   }
 
-  void end_pass(const Input& input, std::uint32_t pass) {
+  void end_pass(const Input& input, std::uint64_t pass) {
     const bool same = inputs_.size() == 1 && input.first == 0 &&
                       input.last == input.reader.passes().size() && pass + 1 == input.last;
     appender_->commit(same ? input.reader.resume_state() : std::vector<std::byte>());

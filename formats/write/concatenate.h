@@ -13,9 +13,10 @@
 namespace psf::formats {
 
 struct ConcatenateOptions {
-  std::optional<Codec> codec;              // for all columns; not set: each stays as it is stored
-  std::vector<std::string> channels;       // to keep; empty: all. Required channels are always kept
-  std::vector<std::string> drop;           // to leave out
+  std::optional<Codec> codec;  // for all columns; not set: each stays as it is stored
+  // Of the paths, to keep; empty: all. Required channels are always kept.
+  std::vector<std::string> channels;
+  std::vector<std::string> drop;           // to leave out; a table's name: the table
   std::vector<std::string> quantize;       // `normal` and `direction` to octahedral, others to f16
   std::uint64_t first_pass = 0;            // number of a pass, counted through all inputs
   std::optional<std::uint64_t> last_pass;  // the pass behind the last one; not set: to the end
@@ -31,7 +32,7 @@ struct ConcatenateResult {
 // Writes the committed passes of `inputs`, in their order and with new numbers, to the closed file
 // `output`, which appears under its name when whole and may be one of the inputs. The metadata are
 // those of the first input; with several inputs, the key `joined` lists uuid, seed, producer and
-// passes of each. A single input with all its passes keeps its resume state. Unchanged columns are
+// passes of each. Tables are copied as they are. A single input with all its passes keeps its resume state. Unchanged columns are
 // copied as stored. Throws Error{bad_input} where the inputs differ in scene, cameras or channels,
 // or one is damaged or lacks a channel, Error{usage} for passes that do not exist, Error{io}. Calls
 // `progress(done, total)` with records, from the calling thread; it may throw to stop.

@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "formats/layout/chunk.h"
 #include "formats/layout/crc.h"
 #include "formats/layout/head_frame.h"
 #include "formats/layout/layout.h"
@@ -47,9 +46,7 @@ void FrameWriter::write_start(const Head& head) {
   write(parts);
 }
 
-ChunkEntry FrameWriter::write_chunk(std::uint64_t first, std::uint32_t count, std::uint32_t pass,
-                                    std::span<const EncodedColumn> columns) {
-  Chunk chunk{first, count, pass, {}};
+ChunkEntry FrameWriter::write_chunk(Chunk chunk, std::span<const EncodedColumn> columns) {
   std::uint64_t place = align_up(kPrefix + kChunkFixed + kColumnEntry * columns.size(), kAlignment);
   for (const EncodedColumn& column : columns) {
     chunk.columns.push_back({static_cast<std::uint16_t>(chunk.columns.size()), column.codec,
@@ -57,12 +54,14 @@ ChunkEntry FrameWriter::write_chunk(std::uint64_t first, std::uint32_t count, st
     place = align_up(place + column.bytes.size(), kAlignment);
   }
   const std::uint64_t length = align_up(place, kPage);
-  const auto start = front(kChunkType, kRequiredFrame, encode_chunk(chunk), length);
+  const bool of_paths = chunk.table == 0;
+  const auto start = front(of_paths ? kChunkType : kTableChunkType, of_paths ? kRequiredFrame : 0,
+                           encode_chunk(chunk), length);
   Parts parts;
   add_padded(parts, start, kAlignment);
   for (const EncodedColumn& column : columns) add_padded(parts, column.bytes, kAlignment);
   parts.push_back(zeros(length - place));
-  const ChunkEntry entry{end_, length, first, count, pass};
+  const ChunkEntry entry{end_, length, chunk.first, chunk.count, chunk.pass};
   write(parts);
   return entry;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/layout/chunk.h"
 #include "formats/layout/codec.h"
 #include "formats/layout/commit.h"
 #include "formats/layout/file.h"
@@ -30,8 +31,8 @@ class FrameWriter {
 
   // Writes HEAD and an empty SLOT.
   void write_start(const Head& head);
-  ChunkEntry write_chunk(std::uint64_t first, std::uint32_t count, std::uint32_t pass,
-                         std::span<const EncodedColumn> columns);
+  // The places of `chunk`'s columns follow from `columns`.
+  ChunkEntry write_chunk(Chunk chunk, std::span<const EncodedColumn> columns);
   // Sets the sections of `commit` and writes it. Returns its record for write_slot().
   SlotRecord write_commit(Commit commit, std::span<const ChunkEntry> index,
                           std::span<const std::byte> resume_state);

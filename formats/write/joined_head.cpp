@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "formats/layout/layout.h"
 #include "formats/layout/metadata.h"
 
 namespace psf::formats {
@@ -42,6 +43,12 @@ Json metadata_of(const Reader& reader) {
   }
 }
 
+std::string table_names(const Head& head) {
+  std::vector<std::string> texts;
+  for (const Table& table : head.tables) texts.push_back(to_text(table));
+  return texts.empty() ? "none" : fmt::format("{}", fmt::join(texts, ", "));
+}
+
 void check_joined(const Reader& reader, const Reader& first) {
   const Head &own = reader.head(), &other = first.head();
   if (own.channels != other.channels) {
@@ -56,6 +63,11 @@ void check_joined(const Reader& reader, const Reader& first) {
                     "'--quantize' make them the same",
                     k, k < own.channels.size() ? to_text(own.channels[k]) : "none",
                     k < other.channels.size() ? to_text(other.channels[k]) : "none"));
+  }
+  if (own.tables != other.tables) {
+    refuse_to_join(reader, first,
+                   fmt::format("it has other tables: {}, not {}; 'psf cat --drop' leaves them out",
+                               table_names(own), table_names(other)));
   }
   if (own.minor != other.minor || own.optional_features != other.optional_features ||
       own.later_fields != other.later_fields || own.later_bytes != other.later_bytes) {
@@ -125,10 +137,12 @@ Channel quantized(const Channel& channel, const std::string& path) {
                                             channel.name, name_of(channel.type)));
 }
 
-// Throws where `names` has one that is no channel.
-void check_names(const Reader& reader, std::span<const std::string> names) {
+// Throws where `names` has one that is no channel, and no table where these are meant, too.
+void check_names(const Reader& reader, std::span<const std::string> names, bool tables = false) {
   for (const std::string& name : names) {
-    if (reader.head().find(name)) continue;
+    if (reader.head().find(name) || (tables && reader.head().find_table(name).value_or(0) > 0)) {
+      continue;
+    }
     std::vector<std::string> known;
     for (const Channel& channel : reader.head().channels) known.push_back(channel.name);
     throw Error(ErrorCode::bad_input, fmt::format("{}: has no channel {}; it has {}", reader.path(),
@@ -139,6 +153,37 @@ void check_names(const Reader& reader, std::span<const std::string> names) {
 bool is_kept(const std::string& name, const ConcatenateOptions& options) {
   return is_required_channel(name) ||
          ((options.channels.empty() || has(options.channels, name)) && !has(options.drop, name));
+}
+
+// The channels of the paths that are written.
+JoinedTable joined_paths(const Reader& first, const ConcatenateOptions& options) {
+  JoinedTable paths;
+  const std::vector<Channel>& channels = first.head().channels;
+  for (std::size_t k = 0; k < channels.size(); ++k) {
+    if (!is_kept(channels[k].name, options)) continue;
+    const Channel written = has(options.quantize, channels[k].name)
+                                ? quantized(channels[k], first.path())
+                                : channels[k];
+    paths.channels.push_back({k, written, written != channels[k]});
+  }
+  return paths;
+}
+
+void add_tables(const Reader& first, const ConcatenateOptions& options, JoinedHead& joined) {
+  joined.head.tables.clear();
+  for (std::size_t k = 1; k < first.head().table_count(); ++k) {
+    const Table& table = first.head().tables[k - 1];
+    if (has(options.drop, table.name)) continue;
+    JoinedTable copied{k, {}};
+    for (std::size_t c = 0; c < table.channels.size(); ++c) {
+      copied.channels.push_back({c, table.channels[c], false});
+    }
+    joined.tables.push_back(std::move(copied));
+    joined.head.tables.push_back(table);
+  }
+  // Without them it is a file of version 1.0, unless a later one wrote it.
+  const bool dropped = joined.head.tables.size() < first.head().tables.size();
+  if (dropped && joined.head.tables.empty() && joined.head.minor == kMinor) joined.head.minor = 0;
 }
 
 }  // namespace
@@ -152,23 +197,20 @@ JoinedHead join_heads(std::span<const JoinedInput> inputs, const ConcatenateOpti
     joined.head.chunk_capacity =
         std::max(joined.head.chunk_capacity, input.reader.head().chunk_capacity);
   }
-  for (const auto& names : {options.channels, options.drop, options.quantize}) {
-    check_names(first, names);
-  }
+  check_names(first, options.channels);
+  check_names(first, options.drop, true);
+  check_names(first, options.quantize);
   for (const std::string& name : options.drop) {
     if (!is_required_channel(name)) continue;
     throw Error(ErrorCode::usage,
                 fmt::format("channel {} cannot be dropped: no dump is one without it", name));
   }
+  joined.tables.push_back(joined_paths(first, options));
   joined.head.channels.clear();
-  for (std::size_t k = 0; k < first.head().channels.size(); ++k) {
-    const Channel& channel = first.head().channels[k];
-    if (!is_kept(channel.name, options)) continue;
-    const Channel written =
-        has(options.quantize, channel.name) ? quantized(channel, first.path()) : channel;
-    joined.channels.push_back({k, written, written != channel});
-    joined.head.channels.push_back(written);
+  for (const JoinedChannel& channel : joined.tables[0].channels) {
+    joined.head.channels.push_back(channel.channel);
   }
+  add_tables(first, options, joined);
   joined.head.metadata = joined_metadata(inputs);
   joined.notes = notes_on(inputs);
   return joined;

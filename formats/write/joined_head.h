@@ -26,14 +26,19 @@ struct JoinedChannel {
   bool quantized = false;
 };
 
-struct JoinedHead {
-  Head head;
+struct JoinedTable {
+  std::size_t source = 0;  // number of the table in the inputs, as Head::schema() counts
   std::vector<JoinedChannel> channels;
-  std::vector<std::string> notes;  // remarks about inputs that are allowed but unusual
 };
 
-// Throws Error{bad_input} that names a file that differs from the first in scene, channels, cameras
-// or the way of rendering, or that lacks a channel; Error{usage} that names a channel that cannot
+struct JoinedHead {
+  Head head;
+  std::vector<JoinedTable> tables;  // the first are the paths
+  std::vector<std::string> notes;   // remarks about inputs that are allowed but unusual
+};
+
+// Throws Error{bad_input} that names a file that differs from the first in scene, channels, tables,
+// cameras or the way of rendering, or that lacks a channel; Error{usage} that names a channel that cannot
 // be dropped or quantised.
 [[nodiscard]] JoinedHead join_heads(std::span<const JoinedInput> inputs,
                                     const ConcatenateOptions& options);

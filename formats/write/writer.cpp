@@ -14,11 +14,14 @@
 #include "formats/write/appender.h"
 
 namespace psf::formats {
-namespace {}  // namespace
 
 struct Writer::State {
   State(std::unique_ptr<Appender> to, const WriterOptions& writer_options)
-      : file(std::move(to)), codec(writer_options.codec), pending(head().channels.size()) {}
+      : file(std::move(to)), codec(writer_options.codec), pending(head().table_count()) {
+    for (std::size_t k = 0; k < pending.size(); ++k) {
+      pending[k].columns.resize(head().schema(k).channels.size());
+    }
+  }
 
   [[nodiscard]] const Head& head() const { return file->head(); }
   [[nodiscard]] const std::string& path() const { return file->path(); }
@@ -39,69 +42,84 @@ struct Writer::State {
     }
   }
 
-  void append(std::size_t count, std::span<const void* const> columns) {
-    if (columns.size() != head().channels.size()) {
+  void append(std::size_t table, std::size_t count, std::span<const void* const> columns) {
+    const Schema& schema = head().schema(table);
+    if (columns.size() != schema.channels.size()) {
       throw Error(ErrorCode::usage, fmt::format("{}: {} columns given for {} channels", path(),
-                                                columns.size(), head().channels.size()));
+                                                columns.size(), schema.channels.size()));
     }
+    Pending& held = pending[table];
     std::size_t done = 0;
     while (done < count) {
-      const std::size_t capacity = head().chunk_capacity;
-      if (pending_count == 0 && count - done >= capacity) {
+      const std::size_t capacity = schema.chunk_capacity;
+      if (held.count == 0 && count - done >= capacity) {
         const std::size_t most =
-            std::max<std::size_t>(1, kBatchBytes / (capacity * head().stride()));
+            std::max<std::size_t>(1, kBatchBytes / (capacity * schema.stride()));
         const std::size_t chunks = std::min(most, (count - done) / capacity);
-        write_chunks(chunks, capacity, [&](std::size_t channel) {
+        write_chunks(table, chunks, capacity, [&](std::size_t channel) {
           return static_cast<const std::byte*>(columns[channel]) +
-                 done * head().channels[channel].stride();
+                 done * schema.channels[channel].stride();
         });
         done += chunks * capacity;
         continue;
       }
-      const std::size_t taken = std::min(count - done, capacity - pending_count);
+      const std::size_t taken = std::min(count - done, capacity - held.count);
       for (std::size_t k = 0; k < columns.size(); ++k) {
-        const std::size_t stride = head().channels[k].stride();
+        const std::size_t stride = schema.channels[k].stride();
         const auto* from = static_cast<const std::byte*>(columns[k]) + done * stride;
-        pending[k].insert(pending[k].end(), from, from + taken * stride);
+        held.columns[k].insert(held.columns[k].end(), from, from + taken * stride);
       }
-      pending_count += taken;
+      held.count += taken;
       done += taken;
-      if (pending_count == capacity) flush();
+      if (held.count == capacity) flush(table);
     }
   }
 
-  void flush() {
-    if (pending_count == 0) return;
-    write_chunks(1, pending_count, [&](std::size_t channel) { return pending[channel].data(); });
-    for (auto& column : pending) column.clear();
-    pending_count = 0;
+  void flush(std::size_t table) {
+    Pending& held = pending[table];
+    if (held.count == 0) return;
+    write_chunks(table, 1, held.count,
+                 [&](std::size_t channel) { return held.columns[channel].data(); });
+    for (auto& column : held.columns) column.clear();
+    held.count = 0;
+  }
+
+  [[nodiscard]] bool has_pending() const {
+    return std::any_of(pending.begin(), pending.end(),
+                       [](const Pending& held) { return held.count > 0; });
   }
 
   // Encodes columns of chunks of `count` records each in parallel and writes the chunks in order.
   template <class Data>
-  void write_chunks(std::size_t chunks, std::size_t count, const Data& data) {
-    const std::size_t channels = head().channels.size();
+  void write_chunks(std::size_t table, std::size_t chunks, std::size_t count, const Data& data) {
+    const Schema& schema = head().schema(table);
+    const std::size_t channels = schema.channels.size();
     const std::size_t jobs = chunks * channels;
     if (encoded.size() < jobs) encoded.resize(jobs);
     if (storage.size() < jobs) storage.resize(jobs);
     tbb::parallel_for(std::size_t{0}, jobs, [&](std::size_t job) {
       const std::size_t channel = job % channels;
-      const std::size_t bytes = count * head().channels[channel].stride();
+      const std::size_t bytes = count * schema.channels[channel].stride();
       const std::byte* from = data(channel) + job / channels * bytes;
       encoded[job] = encode_column(codec, {from, bytes}, storage[job]);
     });
     for (std::size_t k = 0; k < chunks; ++k) {
-      file->add_chunk(static_cast<std::uint32_t>(count),
+      file->add_chunk(table, static_cast<std::uint32_t>(count),
                       std::span(encoded).subspan(k * channels, channels));
     }
   }
+
+  // The chunk of a table that is being filled: a column each, of so many records.
+  struct Pending {
+    std::vector<std::vector<std::byte>> columns;
+    std::size_t count = 0;
+  };
 
   std::unique_ptr<Appender> file;
   Codec codec;
   std::optional<Error> error;
 
-  std::vector<std::vector<std::byte>> pending;  // a column each, of the chunk being filled
-  std::size_t pending_count = 0;
+  std::vector<Pending> pending;  // one a table
   std::vector<EncodedColumn> encoded;
   std::vector<Buffer> storage;
 };
@@ -121,19 +139,23 @@ Writer& Writer::operator=(Writer&&) noexcept = default;
 Writer::~Writer() = default;
 
 void Writer::append(std::size_t count, std::span<const void* const> columns) {
-  state_->guard([&] { state_->append(count, columns); });
+  append_to(0, count, columns);
+}
+
+void Writer::append_to(std::size_t table, std::size_t count, std::span<const void* const> columns) {
+  state_->guard([&] { state_->append(table, count, columns); });
 }
 
 void Writer::commit(std::span<const std::byte> resume_state) {
   state_->guard([&] {
-    state_->flush();
+    for (std::size_t k = 0; k < state_->pending.size(); ++k) state_->flush(k);
     state_->file->commit(resume_state);
   });
 }
 
 void Writer::close() {
   state_->guard([&] {
-    if (state_->pending_count > 0) {
+    if (state_->has_pending()) {
       throw Error(ErrorCode::usage, state_->path() + ": records were appended but not committed");
     }
     state_->file->close();

@@ -33,7 +33,9 @@ class Writer {
   // Appends `count` records to the current pass. columns[k] points at (count, components) values of
   // channel k of the head, contiguous, as stored (native byte order).
   void append(std::size_t count, std::span<const void* const> columns);
-  // Ends the current pass. `resume_state`: at most 64 KiB that the producer gets back on resume.
+  // The same for a table, as Head::schema() counts.
+  void append_to(std::size_t table, std::size_t count, std::span<const void* const> columns);
+  // Ends the current pass, which has paths. `resume_state`: at most 64 KiB that the producer gets back on resume.
   void commit(std::span<const std::byte> resume_state = {});
   // Writes the last commit again with the flag "closed", unless it already has the flag. It is an
   // error if records were appended after the last commit().
@@ -41,7 +43,7 @@ class Writer {
 
   [[nodiscard]] const std::string& path() const;
   [[nodiscard]] const Head& head() const;       // the file's own
-  [[nodiscard]] std::uint64_t records() const;  // number of committed records
+  [[nodiscard]] std::uint64_t records() const;  // number of committed paths
   [[nodiscard]] std::uint64_t passes() const;   // number of committed passes
   // The resume state of the last commit.
   [[nodiscard]] std::span<const std::byte> resume_state() const;

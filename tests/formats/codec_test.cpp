@@ -103,7 +103,7 @@ TEST_CASE("a zstd column that is too short for its records is refused before roo
     Frame frame;
     frame.prefix = {{}, kChunkType, 1, 0, 64 * kPage, 2};
     frame.directory =
-        encode_chunk({0, 1u << 20, 0, {{0, Codec::zstd, Filter::shuffle4, 0, 128, stored}}});
+        encode_chunk({0, 0, 1u << 20, 0, {{0, Codec::zstd, Filter::shuffle4, 0, 128, stored}}});
     return decode_chunk(frame, head);
   };
   // 4 MiB: 32 blocks of 128 KiB, of 4 bytes each at least.

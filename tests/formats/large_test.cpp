@@ -52,7 +52,7 @@ void write_sparse(const std::string& path, std::uint64_t chunks, std::uint32_t c
     entries.push_back({offset, length, k * count, count, 0});
     if (!fronts) continue;
     Chunk chunk{
-        k * count, count, 0, {{0, Codec::raw, Filter::none, checksums[k % 256], 128, count}}};
+        0, k * count, count, 0, {{0, Codec::raw, Filter::none, checksums[k % 256], 128, count}}};
     put(offset, encode_front({uuid, kChunkType, 1, offset, length, 2 + k}, encode_chunk(chunk)));
     const std::byte first{static_cast<unsigned char>(k % 256)};
     put(offset + 128, {&first, 1});

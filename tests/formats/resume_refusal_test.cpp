@@ -77,15 +77,15 @@ TEST_CASE("a file of a later minor version is read but not continued") {
   const std::string path = scratch.path("r.pvb");
   Head later = test::numbered_head();
   for (const bool bits : {false, true}) {
-    later.minor = bits ? 0 : 1;
-    later.optional_features = bits ? 2 : 0;
+    later.minor = bits ? 0 : 2;
+    later.optional_features = bits ? 4 : 0;
     {
       Writer writer(path, later, {Codec::raw, false, {}});
       test::write_numbered(writer, 2);
     }
     CHECK(test::holds_passes(Reader(path), 2));
     const std::string text = refusal(path, test::numbered_head(), ErrorCode::bad_input);
-    CHECK(test::has(text, bits ? "version 1.0" : "version 1.1"));
+    CHECK(test::has(text, bits ? "version 1.0" : "version 1.2"));
   }
 }
 

@@ -27,7 +27,7 @@ TEST_CASE("statistics count what is not finite and leave it out") {
     writer.commit();
   }
   const Reader reader(scratch.path("s.pvb"));
-  const auto of = channel_statistics(reader, 0);
+  const auto of = channel_statistics(reader.table(0), 0);
   REQUIRE(of.size() == 2);
   CHECK(of[0].finite == 4);
   CHECK(of[0].non_finite == 3);
@@ -36,10 +36,10 @@ TEST_CASE("statistics count what is not finite and leave it out") {
   CHECK(of[0].mean() == 3);
   CHECK(of[1].finite == 0);
   CHECK(of[1].non_finite == 7);
-  const auto of_flags = channel_statistics(reader, 1);
+  const auto of_flags = channel_statistics(reader.table(0), 1);
   CHECK(of_flags[0].max == 255);
   CHECK(of_flags[0].mean() == Approx(261.0 / 7));
-  const auto sizes = channel_sizes(reader);
+  const auto sizes = channel_sizes(reader.table(0));
   CHECK(sizes[0].raw == 56);
   CHECK(sizes[0].stored == 56);
   CHECK(sizes[0].raw_columns == 3);

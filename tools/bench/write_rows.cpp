@@ -28,7 +28,7 @@ Bytes bytes_of(const std::string& path) {
   const formats::Reader reader(path);
   Bytes bytes;
   bytes.file = static_cast<double>(reader.file_bytes());
-  for (const formats::ChannelSize& size : formats::channel_sizes(reader)) {
+  for (const formats::ChannelSize& size : formats::channel_sizes(reader.table(0))) {
     bytes.raw += static_cast<double>(size.raw);
     bytes.stored += static_cast<double>(size.stored);
   }

@@ -58,7 +58,7 @@ void chunk(Bytes bytes) {
 
 void commit(Bytes bytes) {
   const formats::Frame front = frame(formats::kCommitType, bytes);
-  const formats::Commit decoded = formats::decode_commit(front);
+  const formats::Commit decoded = formats::decode_commit(front, 2);
   for (const formats::Section& section : {decoded.index, decoded.head, decoded.resume}) {
     demand(section.offset <= front.prefix.length &&
                section.length <= front.prefix.length - section.offset,
