@@ -31,26 +31,26 @@ std::array<std::uint8_t, 3> colour_of_number(std::uint64_t number) {
 }  // namespace
 
 PointColours::PointColours(const ExportRecords& records, const std::string& name)
-    : records_(records), radiance_(name == kRadiance && !records.reader().head().find(name)) {
-  const formats::Head& head = records.reader().head();
+    : records_(records), radiance_(name == kRadiance && !records.schema().find(name)) {
+  const formats::Schema& schema = records.schema();
   const auto place = [&](const std::string& wanted) {
     return records.find(std::array{wanted}).front();
   };
   channel_ = place(radiance_ ? "contribution" : name);
   if (radiance_) {
     throughput_ = place("throughput");
-    unfiltered_ = head.find("unfiltered");
+    unfiltered_ = schema.find("unfiltered");
   }
   const auto check = [&](std::size_t k, bool fits) {
     if (fits) return;
-    const formats::Channel& channel = head.channels[k];
+    const formats::Channel& channel = schema.channels[k];
     throw Error(ErrorCode::bad_input,
                 fmt::format("{}: no colour can be made of the channel {}, {} x {}; give --colour "
                             "none or one of 1 or 3 floats",
-                            records.reader().path(), channel.name, formats::name_of(channel.type),
+                            records.path(), channel.name, formats::name_of(channel.type),
                             channel.components));
   };
-  const formats::Channel& channel = head.channels[channel_];
+  const formats::Channel& channel = schema.channels[channel_];
   components_ = channel.decoded_components();
   if (!is_float(channel)) {
     kind_ = Kind::number;
@@ -59,11 +59,11 @@ PointColours::PointColours(const ExportRecords& records, const std::string& name
   }
   check(channel_, components_ == 3 || (components_ == 1 && !radiance_));
   if (throughput_) {
-    const formats::Channel& other = head.channels[*throughput_];
+    const formats::Channel& other = schema.channels[*throughput_];
     check(*throughput_, is_float(other) && other.decoded_components() == 3);
   }
   if (unfiltered_) {
-    const formats::Channel& other = head.channels[*unfiltered_];
+    const formats::Channel& other = schema.channels[*unfiltered_];
     check(*unfiltered_, is_float(other) && other.decoded_components() == 3);
   }
   if (name == "reflectance" || name == "roughness") kind_ = Kind::albedo;
@@ -94,7 +94,7 @@ Rgb PointColours::linear(std::size_t k) const {
 
 std::array<std::uint8_t, 3> PointColours::at(std::size_t k) const {
   if (kind_ == Kind::number) {
-    const std::size_t size = records_.reader().head().channels[channel_].stride();
+    const std::size_t size = records_.schema().channels[channel_].stride();
     std::uint64_t number = 0;
     std::memcpy(&number, numbers_.data() + k * size, size);
     return colour_of_number(number);

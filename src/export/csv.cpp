@@ -95,7 +95,7 @@ ExportResult export_csv(const formats::Reader& reader, const ExportSelection& se
   std::string line = "record,pass";
   std::size_t bytes = 16;
   for (const std::size_t k : channels) {
-    const formats::Channel& channel = reader.head().channels[k];
+    const formats::Channel& channel = records.schema().channels[k];
     const bool decoded =
         channel.encoding == formats::Encoding::octahedral || channel.type == formats::Type::f16;
     columns.push_back({k, channel.type, channel.decoded_components(), decoded, {}, {}});

@@ -157,7 +157,7 @@ ExportResult export_npy(const formats::Reader& reader, const ExportSelection& se
   std::vector<std::byte> stored;
   std::vector<float> floats;
   for (const std::size_t k : channels) {
-    const formats::Channel& channel = reader.head().channels[k];
+    const formats::Channel& channel = records.schema().channels[k];
     const bool decode = channel.encoding == formats::Encoding::octahedral;
     const std::size_t components = channel.decoded_components();
     write_array(file_stem(channel.name, taken), descr(channel), components,

@@ -47,11 +47,12 @@ class Cloud {
       : records_(reader, selection) {
     position_ = vector_of("position", true).value();
     normal_ = vector_of("normal", false);
-    flags_ = reader.head().find("flags");
-    if (flags_ && reader.head().channels[*flags_].stride() != 1) flags_.reset();
+    // Only of the paths do they tell whether there is a vertex.
+    if (selection.table == formats::kPaths) flags_ = records_.schema().find("flags");
+    if (flags_ && records_.schema().channels[*flags_].stride() != 1) flags_.reset();
     if (options.colour != "none") colours_.emplace(records_, options.colour);
     for (const std::size_t k : records_.find(selection.channels)) {
-      const formats::Channel& channel = reader.head().channels[k];
+      const formats::Channel& channel = records_.schema().channels[k];
       const bool wide = channel.type == formats::Type::f64 || channel.type == formats::Type::u32 ||
                         channel.type == formats::Type::u64;
       const bool floats = is_float(channel) && !wide;
@@ -96,7 +97,7 @@ class Cloud {
     if (colours_) add("uchar", {"red", "green", "blue"});
     for (const Scalars& scalars : scalars_) {
       for (std::size_t c = 0; c < scalars.components; ++c) {
-        const auto& channel = records_.reader().head().channels[scalars.channel];
+        const auto& channel = records_.schema().channels[scalars.channel];
         properties.push_back(
             {scalars.wide ? "double" : "float", "scalar_" + component_name(channel, c)});
       }
@@ -132,16 +133,17 @@ class Cloud {
 
  private:
   [[nodiscard]] std::optional<std::size_t> vector_of(const char* name, bool required) const {
-    const formats::Reader& reader = records_.reader();
-    const auto place = required ? reader.require(name, "a point cloud") : reader.head().find(name);
+    const formats::Schema& schema = records_.schema();
+    const auto place =
+        required ? records_.table().require(name, "a point cloud") : schema.find(name);
     if (!place) return place;
-    const formats::Channel& channel = reader.head().channels[*place];
+    const formats::Channel& channel = schema.channels[*place];
     if (is_float(channel) && channel.decoded_components() == 3) return place;
     if (!required) return std::nullopt;
     throw Error(
         ErrorCode::bad_input,
         fmt::format("{}: channel {} is {} x {}, expected 3 floats; see formats/README.md",
-                    reader.path(), name, formats::name_of(channel.type), channel.components));
+                    records_.path(), name, formats::name_of(channel.type), channel.components));
   }
 
   [[nodiscard]] std::size_t row_bytes() const {

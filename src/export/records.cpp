@@ -24,11 +24,21 @@ void thin(std::vector<T>& values, std::size_t width, std::size_t count, std::uin
   values.resize(count * width);
 }
 
+const formats::TableReader& table_of(const formats::Reader& reader, const std::string& name) {
+  if (const formats::TableReader* found = reader.find_table(name)) return *found;
+  std::string all;
+  for (std::size_t k = 0; k < reader.head().table_count(); ++k) {
+    all += fmt::format("{}{}", k > 0 ? ", " : "", reader.head().table_name(k));
+  }
+  throw Error(ErrorCode::bad_input,
+              fmt::format("{}: has no table {}; it has {}", reader.path(), name, all));
+}
+
 }  // namespace
 
 ExportRecords::ExportRecords(const formats::Reader& reader, const ExportSelection& selection)
-    : reader_(reader), every_(selection.every) {
-  const auto passes = reader.passes();
+    : path_(reader.path()), table_(table_of(reader, selection.table)), every_(selection.every) {
+  const auto passes = table_.passes();
   const std::size_t begin = selection.passes.first;
   const std::size_t end = selection.passes.last.value_or(passes.size());
   if (begin >= end || end > passes.size()) {
@@ -42,7 +52,7 @@ ExportRecords::ExportRecords(const formats::Reader& reader, const ExportSelectio
 }
 
 std::uint32_t ExportRecords::pass(std::uint64_t k) const {
-  const auto passes = reader_.passes();
+  const auto passes = table_.passes();
   const auto behind =
       std::upper_bound(passes.begin(), passes.end(), record(k),
                        [](std::uint64_t at, const formats::Pass& pass) { return at < pass.first; });
@@ -52,12 +62,12 @@ std::uint32_t ExportRecords::pass(std::uint64_t k) const {
 std::vector<std::size_t> ExportRecords::find(std::span<const std::string> names) const {
   std::vector<std::size_t> places;
   for (const std::string& name : names) {
-    const auto place = reader_.head().find(name);
+    const auto place = table_.schema().find(name);
     if (!place) {
       std::string all;
-      for (const formats::Channel& channel : reader_.head().channels) all += " " + channel.name;
+      for (const formats::Channel& channel : table_.schema().channels) all += " " + channel.name;
       throw Error(ErrorCode::bad_input,
-                  fmt::format("{}: has no channel {}; it has{}", reader_.path(), name, all));
+                  fmt::format("{}: has no channel {}; it has{}", path_, name, all));
     }
     if (std::find(places.begin(), places.end(), *place) == places.end()) places.push_back(*place);
   }
@@ -66,7 +76,7 @@ std::vector<std::size_t> ExportRecords::find(std::span<const std::string> names)
 
 std::vector<std::size_t> ExportRecords::find_or_all(std::span<const std::string> names) const {
   if (!names.empty()) return find(names);
-  std::vector<std::size_t> channels(reader_.head().channels.size());
+  std::vector<std::size_t> channels(table_.schema().channels.size());
   std::iota(channels.begin(), channels.end(), std::size_t{0});
   return channels;
 }
@@ -74,20 +84,20 @@ std::vector<std::size_t> ExportRecords::find_or_all(std::span<const std::string>
 void ExportRecords::read(std::size_t channel, std::uint64_t k, std::size_t count,
                          std::vector<std::byte>& out) const {
   if (count == 0) return out.clear();
-  const std::size_t width = reader_.head().channels[channel].stride();
+  const std::size_t width = table_.schema().channels[channel].stride();
   const std::size_t whole = static_cast<std::size_t>((count - 1) * every_ + 1);
   out.resize(whole * width);
-  reader_.read(channel, record(k), whole, out);
+  table_.read(channel, record(k), whole, out);
   thin(out, width, count, every_);
 }
 
 void ExportRecords::read_floats(std::size_t channel, std::uint64_t k, std::size_t count,
                                 std::vector<float>& out) const {
   if (count == 0) return out.clear();
-  const std::size_t width = reader_.head().channels[channel].decoded_components();
+  const std::size_t width = table_.schema().channels[channel].decoded_components();
   const std::size_t whole = static_cast<std::size_t>((count - 1) * every_ + 1);
   out.resize(whole * width);
-  reader_.read_floats(channel, record(k), whole, out);
+  table_.read_floats(channel, record(k), whole, out);
   thin(out, width, count, every_);
 }
 

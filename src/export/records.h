@@ -1,4 +1,5 @@
-// The records of a dump that an export writes: every K-th of a range of passes, read in batches.
+// The records of a dump, or of a table of it, that an export writes: every K-th of a range of
+// passes, read in batches.
 #pragma once
 
 #include <cstddef>
@@ -14,6 +15,7 @@
 namespace psf::exports {
 
 struct ExportSelection {
+  std::string table = std::string(formats::kPaths);
   std::vector<std::string> channels;  // names; empty: the default of the export's format
   run::PassSelection passes;
   std::uint64_t every = 1;  // write every K-th of the records, from the first on
@@ -21,10 +23,13 @@ struct ExportSelection {
 
 class ExportRecords {
  public:
-  // Throws Error{usage} for passes that the file does not have. Keeps a reference to the reader.
+  // Throws Error{usage} for passes, Error{bad_input} for a table that the file does not have. Keeps
+  // a reference to the reader.
   ExportRecords(const formats::Reader& reader, const ExportSelection& selection);
 
-  [[nodiscard]] const formats::Reader& reader() const { return reader_; }
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] const formats::TableReader& table() const { return table_; }
+  [[nodiscard]] const formats::Schema& schema() const { return table_.schema(); }
   [[nodiscard]] std::uint64_t size() const { return size_; }
   [[nodiscard]] std::uint64_t passes() const { return passes_; }
   // The place in the file of selected record k.
@@ -49,7 +54,8 @@ class ExportRecords {
   [[nodiscard]] std::size_t batch(std::size_t bytes) const;
 
  private:
-  const formats::Reader& reader_;
+  const std::string& path_;
+  const formats::TableReader& table_;
   std::uint64_t first_ = 0, size_ = 0, passes_ = 0, every_ = 1;
 };
 

@@ -30,7 +30,7 @@ namespace {
 
 struct ExportOptions {
   CommonOptions common;
-  std::string input, output, format, passes;
+  std::string input, output, format, passes, table{formats::kPaths};
   std::vector<std::string> channels;
   std::uint64_t every = 1;
   // As written; empty: not given.
@@ -74,6 +74,7 @@ exports::PlyOptions ply_options(const ExportOptions& options, const std::string&
 nlohmann::ordered_json to_json(const ExportOptions& options, const std::string& format,
                                const exports::ExportResult& outcome, double seconds) {
   return {{"file", options.input},
+          {"table", options.table},
           {"format", format},
           {"records", outcome.records},
           {"passes", outcome.passes},
@@ -108,6 +109,7 @@ void run(const ExportOptions& options) {
   const std::string format = format_of(options);
   const exports::PlyOptions ply = ply_options(options, format);
   exports::ExportSelection selection;
+  selection.table = options.table;
   selection.channels = options.channels;
   selection.passes = parse_passes(options.passes);
   selection.every = options.every;
@@ -153,6 +155,12 @@ void add_export(CLI::App& app) {
       ->allow_extra_args(false)
       ->delimiter(',')
       ->type_name("NAME,...");
+  command
+      ->add_option(
+          "--table", options.table,
+          "the records to write: paths, or a table of the file, such as vertices or photons")
+      ->type_name("NAME")
+      ->capture_default_str();
   command->add_option("--passes", options.passes, kPassesHelp)->type_name("FIRST:LAST");
   add_number(*command, "--every", options.every, std::uint64_t{1}, std::uint64_t{1} << 40,
              "only every N-th record; an odd N leaves no stripes");

@@ -12,6 +12,7 @@ inline nlohmann::ordered_json faults_to_json(const std::vector<formats::Fault>& 
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const formats::Fault& fault : faults) {
     nlohmann::ordered_json entry = {{"offset", fault.offset}, {"frame", fault.frame}};
+    if (!fault.table.empty()) entry["table"] = fault.table;
     if (fault.chunk) entry["chunk"] = *fault.chunk;
     if (!fault.channel.empty()) entry["channel"] = fault.channel;
     if (fault.records > 0) {

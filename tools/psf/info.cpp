@@ -112,39 +112,48 @@ void print_overview(const formats::Reader& reader, const formats::Metadata& meta
                                                                bytes(reader.uncommitted_bytes()))));
 }
 
-// The width of the table column with the channels' names.
-std::size_t name_width(const formats::Reader& reader) {
+// The width of the column with the channels' names.
+std::size_t name_width(const formats::Schema& schema) {
   std::size_t width = 14;
-  for (const formats::Channel& channel : reader.head().channels) {
+  for (const formats::Channel& channel : schema.channels) {
     width = std::max(width, channel.name.size());
   }
   return width;
 }
 
-void print_channels(const formats::Reader& reader, const std::vector<formats::ChannelSize>& sizes) {
-  constexpr const char* kRow = "  {:<{}} {:<11}{:>9}{:>10}{:>7}  {}\n";
-  const std::size_t width = name_width(reader);
+// A blank line, and before what is of a table its name.
+void print_title(const formats::TableReader& table) {
   fmt::print("\n");
+  if (table.name() == formats::kPaths) return;
+  line("table", fmt::format("{}: {} records, {} chunk{}", table.name(), grouped(table.records()),
+                            grouped(table.chunks().size()), table.chunks().size() == 1 ? "" : "s"));
+}
+
+void print_channels(const formats::TableReader& table,
+                    const std::vector<formats::ChannelSize>& sizes) {
+  constexpr const char* kRow = "  {:<{}} {:<11}{:>9}{:>10}{:>7}  {}\n";
+  const std::size_t width = name_width(table.schema());
+  print_title(table);
   fmt::print(kRow, "channel", width, "type", "raw", "stored", "ratio", "codec");
   formats::ChannelSize total;
   for (std::size_t k = 0; k < sizes.size(); ++k) {
-    const formats::Channel& channel = reader.head().channels[k];
+    const formats::Channel& channel = table.schema().channels[k];
     fmt::print(kRow, channel.name, width, type_text(channel), bytes(sizes[k].raw),
                bytes(sizes[k].stored), fmt::format("{:.2f}", ratio(sizes[k])),
                codec_text(sizes[k]));
     total.raw += sizes[k].raw;
     total.stored += sizes[k].stored;
   }
-  fmt::print(kRow, "all", width, fmt::format("{} B/record", reader.head().stride()),
+  fmt::print(kRow, "all", width, fmt::format("{} B/record", table.schema().stride()),
              bytes(total.raw), bytes(total.stored), fmt::format("{:.2f}", ratio(total)), "");
 }
 
-Statistics read_statistics(const formats::Reader& reader, bool quiet) {
-  const std::size_t channels = reader.head().channels.size(), chunks = reader.chunks().size();
+Statistics read_statistics(const formats::TableReader& table, bool quiet) {
+  const std::size_t channels = table.schema().channels.size(), chunks = table.chunks().size();
   Statistics statistics;
   core::Progress progress("statistics", quiet);
   for (std::size_t k = 0; k < channels; ++k) {
-    statistics.push_back(formats::channel_statistics(reader, k, [&](std::size_t done) {
+    statistics.push_back(formats::channel_statistics(table, k, [&](std::size_t done) {
       core::throw_if_interrupted("not all was read");
       progress.advance(k * chunks + done, channels * chunks);
     }));
@@ -153,10 +162,10 @@ Statistics read_statistics(const formats::Reader& reader, bool quiet) {
   return statistics;
 }
 
-void print_statistics(const formats::Reader& reader, const Statistics& statistics) {
+void print_statistics(const formats::TableReader& table, const Statistics& statistics) {
   constexpr const char* kRow = "  {:<{}} {:>3}{:>14}{:>14}{:>14}{:>12}\n";
-  const std::size_t width = name_width(reader);
-  fmt::print("\n");
+  const std::size_t width = name_width(table.schema());
+  print_title(table);
   fmt::print(kRow, "channel", width, "", "min", "max", "mean", "non-finite");
   for (std::size_t k = 0; k < statistics.size(); ++k) {
     for (std::size_t c = 0; c < statistics[k].size(); ++c) {
@@ -164,7 +173,7 @@ void print_statistics(const formats::Reader& reader, const Statistics& statistic
       const auto number = [&](double value) {
         return of.finite == 0 ? std::string("-") : fmt::format("{:.6g}", value);
       };
-      fmt::print(kRow, c == 0 ? reader.head().channels[k].name : "", width,
+      fmt::print(kRow, c == 0 ? table.schema().channels[k].name : "", width,
                  statistics[k].size() > 1 ? std::to_string(c) : "", number(of.min), number(of.max),
                  number(of.mean()), grouped(of.non_finite));
     }
@@ -196,13 +205,19 @@ void print_noise(const formats::Metadata& metadata, const Noise& noise) {
   }
 }
 
-nlohmann::ordered_json to_json(const formats::Reader& reader,
-                               const std::vector<formats::ChannelSize>& sizes,
-                               const Statistics& statistics) {
+// What is told of the paths, or of a table.
+struct TableInfo {
+  const formats::TableReader& table;
+  std::vector<formats::ChannelSize> sizes;
+  Statistics statistics;  // empty unless asked for
+};
+
+nlohmann::ordered_json channels_json(const TableInfo& info) {
   using Json = nlohmann::ordered_json;
-  Json channels = Json::array(), passes = Json::array();
+  const auto& [table, sizes, statistics] = info;
+  Json channels = Json::array();
   for (std::size_t k = 0; k < sizes.size(); ++k) {
-    const formats::Channel& channel = reader.head().channels[k];
+    const formats::Channel& channel = table.schema().channels[k];
     Json entry = {
         {"name", channel.name},
         {"type", name_of(channel.type)},
@@ -224,8 +239,27 @@ nlohmann::ordered_json to_json(const formats::Reader& reader,
     }
     channels.push_back(std::move(entry));
   }
-  for (const formats::Pass& pass : reader.passes()) {
+  return channels;
+}
+
+nlohmann::ordered_json passes_json(const formats::TableReader& table) {
+  nlohmann::ordered_json passes = nlohmann::ordered_json::array();
+  for (const formats::Pass& pass : table.passes()) {
     passes.push_back({{"first_record", pass.first}, {"records", pass.count}});
+  }
+  return passes;
+}
+
+nlohmann::ordered_json to_json(const formats::Reader& reader, const std::vector<TableInfo>& infos) {
+  using Json = nlohmann::ordered_json;
+  Json tables = Json::array();
+  for (std::size_t k = 1; k < infos.size(); ++k) {
+    const formats::TableReader& table = infos[k].table;
+    tables.push_back({{"name", table.name()},
+                      {"records", table.records()},
+                      {"chunks", table.chunks().size()},
+                      {"passes", passes_json(table)},
+                      {"channels", channels_json(infos[k])}});
   }
   return {{"file", reader.path()},
           {"version", {reader.head().major, reader.head().minor}},
@@ -235,8 +269,9 @@ nlohmann::ordered_json to_json(const formats::Reader& reader,
           {"chunks", reader.chunks().size()},
           {"file_bytes", reader.file_bytes()},
           {"uncommitted_bytes", reader.uncommitted_bytes()},
-          {"passes", std::move(passes)},
-          {"channels", std::move(channels)},
+          {"passes", passes_json(infos[0].table)},
+          {"channels", channels_json(infos[0])},
+          {"tables", std::move(tables)},
           {"metadata", Json(nlohmann::json::parse(reader.head().metadata))}};
 }
 
@@ -253,22 +288,26 @@ void run(const InfoOptions& options) {
   check_files({options.input}, {options.common.json});
   const formats::Reader reader(options.input);
   const formats::Metadata metadata = metadata_of(reader);
-  const std::vector<formats::ChannelSize> sizes = channel_sizes(reader);
-  Statistics statistics;
-  if (options.statistics) statistics = read_statistics(reader, options.common.quiet);
-
+  std::vector<TableInfo> tables;
+  for (std::size_t k = 0; k < reader.head().table_count(); ++k) {
+    const formats::TableReader& table = reader.table(k);
+    tables.push_back({table, channel_sizes(table), {}});
+    if (options.statistics) {
+      tables.back().statistics = read_statistics(table, options.common.quiet);
+    }
+  }
   Noise noise;
   if (options.statistics) noise = read_noise(options.input);
   if (!options.common.json.empty()) {
-    nlohmann::ordered_json json = to_json(reader, sizes, statistics);
+    nlohmann::ordered_json json = to_json(reader, tables);
     if (!noise.of.empty()) json["noise"] = study::describe_noise(noise.of, metadata.cameras);
     core::write_json_file(options.common.json, json);
   }
   print_overview(reader, metadata);
   print_tables(metadata);
-  print_channels(reader, sizes);
+  for (const TableInfo& info : tables) print_channels(info.table, info.sizes);
   if (options.statistics) {
-    print_statistics(reader, statistics);
+    for (const TableInfo& info : tables) print_statistics(info.table, info.statistics);
     print_noise(metadata, noise);
   }
 }

@@ -26,10 +26,15 @@ struct VerifyOptions {
 };
 
 nlohmann::ordered_json to_json(const std::string& path, const formats::CheckResult& report) {
+  nlohmann::ordered_json tables = nlohmann::ordered_json::object();
+  for (std::size_t k = 0; k < report.table_records.size(); ++k) {
+    tables[report.head.tables[k].name] = report.table_records[k];
+  }
   return {{"file", path},
           {"whole", report.faults.empty()},
           {"closed", report.closed},
           {"records", report.records},
+          {"table_records", std::move(tables)},
           {"passes", report.passes},
           {"file_bytes", report.file_bytes},
           {"uncommitted_bytes", report.uncommitted_bytes},
@@ -65,8 +70,12 @@ void run(const VerifyOptions& options) {
                             core::counted(report.faults.size(), "fault", "faults"),
                             core::counted(report.frames, "frame", "frames"), tail));
   }
-  fmt::print("{}: whole: {} in {}, {} in {}, {}{}\n", options.input,
-             core::counted(report.records, "record", "records"),
+  std::string records = core::counted(report.records, "record", "records");
+  for (std::size_t k = 0; k < report.table_records.size(); ++k) {
+    records += fmt::format(" and {} {}", core::with_commas(report.table_records[k]),
+                           report.head.tables[k].name);
+  }
+  fmt::print("{}: whole: {} in {}, {} in {}, {}{}\n", options.input, records,
              core::counted(report.passes, "pass", "passes"),
              core::counted(report.columns, "column", "columns"),
              core::counted(report.chunks, "chunk", "chunks"),
