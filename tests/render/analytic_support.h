@@ -123,12 +123,17 @@ inline void check(const Estimate& e, double expected) {
   CHECK(std::abs(e.mean - expected) <= 3 * e.error + 1e-4 * expected);
 }
 
-inline std::unique_ptr<Integrator> make(const Scene& scene, const std::string& name,
-                                        int max_depth = 16) {
+// Of the first pass, where passes differ.
+inline std::unique_ptr<const Integrator> make(const Scene& scene, const std::string& name,
+                                              int max_depth = 16) {
   IntegratorSettings settings;
   settings.name = name;
   settings.max_depth = max_depth;
-  return make_integrator(scene, settings);
+  settings.photon_paths = 1024;
+  std::unique_ptr<const Integrator> integrator = make_integrator(scene, settings);
+  std::uint64_t rays = 0;
+  auto of_pass = integrator->for_pass({}, 0, rays);
+  return of_pass != nullptr ? std::move(of_pass) : std::move(integrator);
 }
 
 }  // namespace psf::render::test

@@ -31,7 +31,7 @@ void check_same(const Vec3& a, const Vec3& b, double tolerance = 1e-4) {
 TEST_CASE("x_i lies behind the mirror, at the length of the whole segment") {
   Scene scene = mirror_scene(2);
   const Ray r = ray({-3, 4.0f - 1e-3f, 0}, {0, 0, 0});
-  for (const char* name : {"path", "direct", "ao"}) {
+  for (const char* name : {"path", "direct", "vpl", "photon", "ao"}) {
     CAPTURE(name);
     const PathRecord record = trace(*make(scene, name), r, SamplerKind::sobol, 0, 0);
     REQUIRE(record.has_vertex);
@@ -152,7 +152,7 @@ TEST_CASE(
   scene.meshes.push_back(make_floor(grey_material, 0.01f));
   const bool open = GENERATE(true, false);
   if (!open) scene.spheres.push_back({"", {0, 0, 0}, 7, grey_material});
-  for (const char* name : {"path", "direct", "ao"}) {
+  for (const char* name : {"path", "direct", "vpl", "photon", "ao"}) {
     const auto integrator = make(scene, name);
     for (std::uint64_t i = 0; i < 64; ++i) {
       const PathRecord record =
@@ -171,7 +171,7 @@ TEST_CASE(
     "An unshaded path is the same path up to x_i, at the cost of its segment and shadow rays") {
   Scene scene = mirror_scene(2);
   scene.lights.push_back(point_light({0, 1, 0}, 3));
-  for (const char* name : {"path", "direct", "ao"}) {
+  for (const char* name : {"path", "direct", "vpl", "photon", "ao"}) {
     const auto integrator = make(scene, name);
     Sampler a = sampler(SamplerKind::sobol, 3, 5), b = a;
     std::uint64_t rays_a = 0, rays_b = 0;
@@ -293,8 +293,11 @@ TEST_CASE("An unknown integrator is an error that lists those there are") {
     CHECK(error.code() == ErrorCode::usage);
     message = error.what();
   }
-  CHECK(message == "no integrator 'paht': use one of path, direct, ao");
+  CHECK(message == "no integrator 'paht': use one of path, direct, vpl, photon, ao");
   IntegratorSettings settings;
   settings.split = 0;
+  CHECK_THROWS_AS(make_integrator(Scene(), settings), Error);
+  settings.split = 1;
+  settings.photon_delta = 1;  // the radius would shrink faster than the photons come
   CHECK_THROWS_AS(make_integrator(Scene(), settings), Error);
 }

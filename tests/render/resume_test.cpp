@@ -138,6 +138,36 @@ TEST_CASE("a file that was rendered otherwise is refused, named, and left as it 
   CHECK(read_all(path) == before);
 }
 
+TEST_CASE("a file of other light paths is refused, where the integrator has them") {
+  const TempFolder folder;
+  const auto names = [&](const std::string& integrator, const auto& change,
+                         const std::string& key) {
+    const std::string path = folder / (integrator + ".pvb");
+    RenderSettings settings = quiet_settings(2);
+    settings.integrator.name = integrator;
+    if (!std::filesystem::exists(path)) (void)render_to(path, settings);
+    settings.passes = 4;
+    change(settings.integrator);
+    const std::string message = refusal(path, settings);
+    CAPTURE(message, key);
+    CHECK((message.find(" " + key + " ") != std::string::npos) == !key.empty());
+  };
+  names(
+      "vpl", [](IntegratorSettings& s) { s.vpl_paths = 3; }, "vpl_paths");
+  names(
+      "vpl", [](IntegratorSettings& s) { s.vpl_set = VplSet::pixel; }, "vpl_set");
+  names(
+      "vpl", [](IntegratorSettings& s) { s.vpl_distance = 3; }, "vpl_distance");
+  names(
+      "photon", [](IntegratorSettings& s) { s.photon_paths = 3; }, "photon_paths");
+  names(
+      "photon", [](IntegratorSettings& s) { s.photon_radius = 3; }, "photon_radius");
+  names(
+      "photon", [](IntegratorSettings& s) { s.photon_delta = 0.5f; }, "photon_delta");
+  names(
+      "path", [](IntegratorSettings& s) { s.photon_paths = 3, s.vpl_paths = 3; }, "");
+}
+
 TEST_CASE("a file of other material names is refused, one without any goes on") {
   const TempFolder folder;
   const std::string path = folder / "a.pvb";

@@ -110,9 +110,13 @@ RenderSettings settings_of(const std::string& integrator, std::uint64_t seed) {
 }
 
 std::vector<Rgb> picture(const Scene& scene, std::uint64_t seed = 0,
-                         const std::string& integrator = "path", double ao_distance = 1) {
+                         const std::string& integrator = "path", double ao_distance = 1,
+                         double scale = 1) {
   RenderSettings settings = settings_of(integrator, seed);
   if (integrator == "ao") settings.integrator.ao_distance = static_cast<float>(ao_distance);
+  settings.integrator.vpl_distance = static_cast<float>(0.2 * scale);
+  settings.integrator.photon_paths = 4096;
+  settings.integrator.photon_radius = static_cast<float>(0.1 * scale);
   const auto made = make_integrator(scene, settings.integrator);
   const auto mean = render::render(scene, *made, settings, nullptr).films[0].mean();
   std::vector<Rgb> pixels;
@@ -176,6 +180,17 @@ TEST_CASE("ambient occlusion reaches as far in a scene of any size and anywhere"
     INFO(move.scale << " at " << triple(move.offset));
     const auto found = picture(load_json(folder, box_scene(move)), 0, "ao", 0.5 * move.scale);
     CHECK(std::abs(mean_of(found) / mean_of(expected) - 1) < 0.005);
+  }
+}
+
+TEST_CASE("light paths give the same picture in a scene of any size and anywhere", "[scale]") {
+  const TempFolder folder;
+  const auto name = GENERATE(as<std::string>(), "vpl", "photon");
+  const std::vector<Rgb> expected = picture(load_json(folder, box_scene({})), 0, name);
+  for (const Move& move : kMoves) {
+    INFO(name << ": " << move.scale << " at " << triple(move.offset));
+    const auto found = picture(load_json(folder, box_scene(move)), 0, name, 1, move.scale);
+    CHECK(std::abs(mean_of(found) / mean_of(expected) - 1) < 0.01);
   }
 }
 

@@ -28,18 +28,12 @@ const char* describe(RTCError error) {
   }
 }
 
-// Embree releases what it was given with the scene; this one reference is ours.
-struct ReleaseGeometry {
-  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-};
-using Geometry = std::unique_ptr<RTCGeometryTy, ReleaseGeometry>;
-
 }  // namespace
 
 Accel::Accel(const Scene& scene) : device_(rtcNewDevice(nullptr)) {
-  check("no device");
+  check_embree(device_.get(), "no device");
   scene_.reset(rtcNewScene(device_.get()));
-  check("no scene");
+  check_embree(device_.get(), "no scene");
   // Robust: no ray passes between two triangles that share an edge.
   rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
@@ -48,7 +42,7 @@ Accel::Accel(const Scene& scene) : device_(rtcNewDevice(nullptr)) {
   }
   add_spheres(scene.spheres, static_cast<unsigned>(scene.meshes.size()));
   rtcCommitScene(scene_.get());
-  check("build");
+  check_embree(device_.get(), "build");
 
   RTCBounds bounds;
   rtcGetSceneBounds(scene_.get(), &bounds);
@@ -62,7 +56,7 @@ Accel::Accel(const Scene& scene) : device_(rtcNewDevice(nullptr)) {
 
 void Accel::add_mesh(const Mesh& mesh, unsigned id) {
   if (mesh.triangles.empty()) return;
-  const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+  const EmbreeGeometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
   const std::size_t count = mesh.positions.size();
   // Embree reads 16 bytes at each 12-byte position, so the last one needs room behind it.
   if (mesh.positions.capacity() > count) {
@@ -78,23 +72,23 @@ void Accel::add_mesh(const Mesh& mesh, unsigned id) {
                              mesh.triangles.size());
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometryByID(scene_.get(), geometry.get(), id);
-  check(fmt::format("mesh '{}'", mesh.name));
+  check_embree(device_.get(), fmt::format("mesh '{}'", mesh.name));
 }
 
 void Accel::add_spheres(const std::vector<Sphere>& spheres, unsigned id) {
   if (spheres.empty()) return;
   points_.reserve(spheres.size());
   for (const Sphere& s : spheres) points_.push_back({s.center.x, s.center.y, s.center.z, s.radius});
-  const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT));
+  const EmbreeGeometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT));
   rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
                              points_.data(), 0, sizeof(Point), points_.size());
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometryByID(scene_.get(), geometry.get(), id);
-  check("spheres");
+  check_embree(device_.get(), "spheres");
 }
 
-void Accel::check(const std::string& what) const {
-  const RTCError error = rtcGetDeviceError(device_.get());
+void check_embree(RTCDevice device, const std::string& what) {
+  const RTCError error = rtcGetDeviceError(device);
   if (error == RTC_ERROR_NONE) return;
   throw Error(ErrorCode::limit, fmt::format("Embree: {}: {}", what, describe(error)));
 }

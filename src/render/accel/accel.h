@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <vector>
 
 #include "core/vec.h"
@@ -72,22 +71,15 @@ class Accel {
     ray.flags = 0;
   }
 
-  struct ReleaseDevice {
-    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-  };
-  struct ReleaseScene {
-    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-  };
   struct alignas(16) Point {
     float x, y, z, radius;
   };
 
   void add_mesh(const Mesh& mesh, unsigned id);
   void add_spheres(const std::vector<Sphere>& spheres, unsigned id);
-  void check(const std::string& what) const;
 
-  std::unique_ptr<RTCDeviceTy, ReleaseDevice> device_;
-  std::unique_ptr<RTCSceneTy, ReleaseScene> scene_;
+  EmbreeDevice device_;
+  EmbreeScene scene_;
   std::vector<Point> points_;
   Vec3 center_{0, 0, 0};
   float radius_ = 1;

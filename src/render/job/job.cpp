@@ -65,6 +65,16 @@ film::Image make_image(const Job& job, const Scene& scene, const Camera& camera,
   if (i.name == "ao" && std::isfinite(i.ao_distance)) {
     add("ao-distance", fmt::format("{}", i.ao_distance));
   }
+  if (i.name == "vpl") {
+    add("vpl-paths", fmt::format("{}", i.vpl_paths));
+    add("vpl-set", i.vpl_set == VplSet::pass ? "pass" : "pixel");
+    add("vpl-distance", fmt::format("{}", i.vpl_distance));
+  }
+  if (i.name == "photon") {
+    add("photon-paths", fmt::format("{}", i.photon_paths));
+    add("photon-radius", fmt::format("{}", i.photon_radius));
+    add("photon-delta", fmt::format("{}", i.photon_delta));
+  }
   film::add_picture(image.attributes, camera.name, 0, passes);
   return image;
 }

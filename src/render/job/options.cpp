@@ -22,6 +22,8 @@ constexpr const char* kSampling = "Sampling";
 constexpr const char* kTransport = "Light transport";
 constexpr const char* kScene = "Camera and light, over those of the scene";
 constexpr const char* kColour = "three numbers R,G,B of at least 0 or one for grey";
+constexpr std::uint32_t kMostLightPaths = 1u << 27;
+constexpr float kLongest = std::numeric_limits<float>::max();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // "1,2,3"
@@ -217,6 +219,20 @@ void add_transport(std::vector<Option>& table) {
   add("roulette-depth", &Settings::roulette_depth, 0, 65536, "Russian roulette starts here");
   add("vertex-roughness", &Settings::vertex_roughness, 0.0f, 1.0f,
       "the vertex stored is the first at least this rough (diffuse is 1)");
+  add("vpl-paths", &Settings::vpl_paths, std::uint32_t{1}, kMostLightPaths,
+      "vpl: light paths of a set");
+  table.push_back(choice(
+      "vpl-set", kTransport, [](Job & j) -> auto& { return j.settings.integrator.vpl_set; },
+      {{"pass", VplSet::pass}, {"pixel", VplSet::pixel}},
+      "vpl: one set of light paths for all paths of a pass, or a set drawn for each"));
+  add("vpl-distance", &Settings::vpl_distance, 0.0f, kLongest,
+      "vpl: lights nearer than this are bounded; 0: 15 % of the scene's radius", "D");
+  add("photon-paths", &Settings::photon_paths, std::uint32_t{1}, kMostLightPaths,
+      "photon: light paths of a pass");
+  add("photon-radius", &Settings::photon_radius, 0.0f, kLongest,
+      "photon: of the first pass; 0: 1 % of the scene's radius", "R");
+  add("photon-delta", &Settings::photon_delta, 0.0f, 0.999f,
+      "photon: pass p has this radius / sqrt(p^delta)", "DELTA");
   add("ao-distance", &Settings::ao_distance, 1e-6f, kInfinity,
       "ao: farther surfaces do not occlude; unbounded unless given", "D");
 }

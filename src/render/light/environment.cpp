@@ -8,6 +8,7 @@
 namespace psf::render {
 
 EnvironmentLight::EnvironmentLight(const Scene& scene) : scale_(scene.environment.radiance) {
+  power_ = 4 * kPi * luminance(scale_);
   if (scene.environment.texture == kNone || is_black(scale_)) return;
   const Texture& map = scene.textures[static_cast<std::size_t>(scene.environment.texture)];
   cosine_ = std::cos(scene.environment.rotation);
@@ -68,6 +69,10 @@ float EnvironmentLight::texel_pdf(std::size_t x, std::size_t y) const {
 }
 
 Vec3 EnvironmentLight::sample(Vec2 u, float& pdf) const {
+  if (map_ == nullptr) {
+    pdf = 0.25f * kInvPi;
+    return uniform_sphere(u);
+  }
   const std::size_t y = rows_.sample(u.y), x = columns_[y].sample(u.x);
   pdf = texel_pdf(x, y);
   const float height = heights_[y] + (heights_[y + 1] - heights_[y]) * u.y;

@@ -20,13 +20,13 @@ class EnvironmentLight {
 
   [[nodiscard]] bool sampled() const { return map_ != nullptr; }
   [[nodiscard]] bool black() const { return is_black(scale_); }
-  // Of a map: integral of luminance over the sphere of directions.
+  // Integral of luminance over the sphere of directions.
   [[nodiscard]] float power() const { return power_; }
   // The radiance that arrives from the sky in the unit `direction`, which points to the sky. The
   // map is interpolated bilinearly and does not wrap at the poles.
   [[nodiscard]] Rgb radiance(const Vec3& direction) const;
-  // Samples a direction, and returns the density of a direction; only where sampled() is true. The
-  // density is constant over each texel.
+  // Samples a direction, and returns the density of a direction; of a map alone where a surface is
+  // lit. The density is constant over each texel, or everywhere.
   [[nodiscard]] Vec3 sample(Vec2 u, float& pdf) const;
   [[nodiscard]] float pdf(const Vec3& direction) const;
 

@@ -10,7 +10,7 @@
 namespace psf::render {
 
 const std::vector<std::string>& integrator_names() {
-  static const std::vector<std::string> names{"path", "direct", "ao"};
+  static const std::vector<std::string> names{"path", "direct", "vpl", "photon", "ao"};
   return names;
 }
 
@@ -22,11 +22,25 @@ PathRecord in_world(PathRecord record, const Space& space) {
   return record;
 }
 
+std::unique_ptr<const Integrator> Integrator::for_pass(const SamplerSettings&, std::uint64_t,
+                                                       std::uint64_t&) const {
+  return nullptr;
+}
+
 std::unique_ptr<Integrator> make_integrator(const Scene& scene, const IntegratorSettings& given) {
   IntegratorSettings settings = given;
   settings.ao_distance = scene.space.local_length(double{given.ao_distance});
+  settings.vpl_distance = scene.space.local_length(double{given.vpl_distance});
+  settings.photon_radius = scene.space.local_length(double{given.photon_radius});
   if (settings.split < 1 || settings.max_depth < 1 || !(settings.ao_distance > 0)) {
     throw Error(ErrorCode::usage, "split, max depth and AO distance must be positive");
+  }
+  if (settings.vpl_paths < 1 || settings.photon_paths < 1 || !(settings.vpl_distance >= 0) ||
+      !(settings.photon_radius >= 0) ||
+      !(settings.photon_delta >= 0 && settings.photon_delta < 1)) {
+    throw Error(ErrorCode::usage,
+                "light paths must be at least 1, VPL distance and photon radius at least 0, photon "
+                "delta from 0 to below 1");
   }
   if (settings.name == "ao" && settings.layers != LayerKind::none) {
     throw Error(ErrorCode::usage, "`layers`: the integrator ao has no light to divide");
@@ -34,6 +48,8 @@ std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Integrator
   if (settings.name == "path" || settings.name == "direct") {
     return make_path_integrator(scene, settings);
   }
+  if (settings.name == "vpl") return make_vpl_integrator(scene, settings);
+  if (settings.name == "photon") return make_photon_integrator(scene, settings);
   if (settings.name == "ao") return make_ao_integrator(scene, settings);
   throw Error(ErrorCode::usage, fmt::format("no integrator '{}': use one of {}", settings.name,
                                             fmt::join(integrator_names(), ", ")));

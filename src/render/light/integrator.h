@@ -18,6 +18,19 @@
 //           no bit. A constant sky is found by scattering alone, an environment map is sampled too.
 //   direct  As `path`, but without light reflected between surfaces after x_i: the path ends at the
 //           depth of x_i.
+//   vpl     As `path`, but part of the light reflected between surfaces comes from virtual point
+//           lights: the vertices of light paths, joined to x_i by shadow rays. Where a light would
+//           be so near that it weighed too much, it is bounded, and what is then missing is found
+//           by following the ray scattered from x_i as `path` does; so is what x_i gets from
+//           mirrors, glass, and lobes smoother than vertex_roughness. The light paths are a set
+//           that all paths of a pass share, or a set of each path's own. Unlike `path`, it also
+//           finds what lights without extent send through mirrors and glass onto a surface that
+//           x_i sees.
+//   photon  As `direct`, and the light reflected between surfaces, caustics with it, is a density:
+//           the power of the photons in a ball around x_i, times the BSDF, over the area of the
+//           ball's disk. Photons are the vertices of light paths behind the first, a set for each
+//           pass. The radius in pass p is photon_radius / sqrt((p + 1)^photon_delta), [radius] of
+//           src/filter/README.md. This is biased, and the bias goes with the radius.
 //   ao      c_i is grey: 1 where a cosine-weighted ray from x_i meets nothing within ao_distance,
 //           else 0. u_i and visibility are 0; lights and sky have no influence.
 //
@@ -67,20 +80,40 @@ struct PathRecord {
 // Converts `record`, whose lengths and positions are those of `space`, to world units.
 [[nodiscard]] PathRecord in_world(PathRecord record, const Space& space);
 
+enum class VplSet : std::uint8_t {
+  pass,  // one set of light paths for all paths of a pass
+  pixel  // a set of its own for each path
+};
+
 struct IntegratorSettings {
-  std::string name = "path";      // path, direct, ao
+  std::string name = "path";      // path, direct, vpl, photon, ao
   int max_depth = 16;             // most surface interactions of a path, with the camera segment's
   int roulette_depth = 4;         // Russian roulette starts after this many, but never at x_i
   float vertex_roughness = 0.3f;  // x_i is the first vertex with at least this perceptual roughness
   std::uint32_t split = 1;        // continuations from x_i, averaged into c_i
   // For ao, in world units: surfaces farther away than this do not occlude.
   float ao_distance = std::numeric_limits<float>::infinity();
+  std::uint32_t vpl_paths = 16;  // light paths of a set
+  VplSet vpl_set = VplSet::pass;
+  // For vpl, in world units: the geometric term is bounded by 1 / vpl_distance^2; 0: chosen by the
+  // scene's size.
+  float vpl_distance = 0;
+  std::uint32_t photon_paths = 131072;  // light paths of a pass
+  float photon_radius = 0;              // in world units; 0: chosen by the scene's size
+  float photon_delta = 1.0f / 3;        // how the radius shrinks with the passes, 0 to < 1
   LayerKind layers = LayerKind::none;  // layers of the light that a path is divided into; not of ao
 };
 
 class Integrator {
  public:
   virtual ~Integrator() = default;
+  // The integrator of one pass. Where the paths of a pass share something, such as light paths, it
+  // is made here, on all threads, from the settings of the sampler and the pass alone, and adds to
+  // `rays` what it shot; paths are then traced by the result, which may outlive this object. Null
+  // where they share nothing, and this object traces the paths of every pass.
+  [[nodiscard]] virtual std::unique_ptr<const Integrator> for_pass(const SamplerSettings& sampler,
+                                                                   std::uint64_t pass,
+                                                                   std::uint64_t& rays) const;
   // Traces a path. Without `shade` it stops at x_i, and c_i is not computed. Adds the number of
   // rays that it shot to `rays`, and to each of `layers`, which are none or those of layers(),
   // its parts of c_i and u_i. Thread-safe.

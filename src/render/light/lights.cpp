@@ -63,14 +63,24 @@ bool Lights::sample(std::size_t light, const Surface& from, const Vec2& u,
   sample.weight = r.radiance * (1 / distance_sq);
   sample.pdf = 0;
   if (r.kind == Kind::spot) {
-    const float cosine = -dot(sample.direction, r.direction);
-    if (cosine <= r.cos_outer) return false;
-    if (cosine < r.cos_inner) {
-      const float t = (cosine - r.cos_outer) / (r.cos_inner - r.cos_outer);
-      sample.weight *= t * t * (3 - 2 * t);
-    }
+    const float share = spot_share(r, -dot(sample.direction, r.direction));
+    if (!(share > 0)) return false;
+    sample.weight *= share;
   }
   return true;
+}
+
+float Lights::spot_share(const Record& light, float cosine) {
+  if (cosine <= light.cos_outer) return 0;
+  if (cosine >= light.cos_inner) return 1;
+  const float t = (cosine - light.cos_outer) / (light.cos_inner - light.cos_outer);
+  return t * t * (3 - 2 * t);
+}
+
+Vec2 Lights::texture_point(const Record& light, std::size_t triangle, float b1, float b2) const {
+  if (light.texture == nullptr || light.mesh->uvs.empty()) return {b1, b2};
+  const auto& [a, b, c] = light.mesh->triangles[triangle];
+  return light.mesh->uvs[a] * (1 - b1 - b2) + light.mesh->uvs[b] * b1 + light.mesh->uvs[c] * b2;
 }
 
 bool Lights::sample_mesh(const Record& light, const Surface& from, Vec2 u,
@@ -91,12 +101,7 @@ bool Lights::sample_mesh(const Record& light, const Surface& from, Vec2 u,
   if (!(cosine > 0) || !std::isfinite(sample.pdf)) return false;
   sample.target = point + triangle.normal * (side * triangle.offset);
   sample.infinite = false;
-  Vec2 uv(b1, b2);
-  if (light.texture != nullptr && !light.mesh->uvs.empty()) {
-    const auto& [a, b, c] = light.mesh->triangles[k];
-    uv = light.mesh->uvs[a] * (1 - b1 - b2) + light.mesh->uvs[b] * b1 + light.mesh->uvs[c] * b2;
-  }
-  sample.weight = radiance(light, uv) * (1 / sample.pdf);
+  sample.weight = radiance(light, texture_point(light, k, b1, b2)) * (1 / sample.pdf);
   return true;
 }
 

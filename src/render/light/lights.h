@@ -20,6 +20,16 @@ struct LightSample {
   float pdf;   // per solid angle; 0 for a light without extent, which scattering never hits
 };
 
+// Light that leaves its source.
+struct Emission {
+  Vec3 origin;     // just off the light's surface; of lights at infinity, outside the scene
+  Vec3 direction;  // unit
+  // Flux over the density of this ray: the mean over rays is the flux of all lights, of those at
+  // infinity what passes through a disk of the scene's radius.
+  Rgb power;
+  std::size_t light;  // its number, Lights::count() for the sky
+};
+
 // Lights are numbered: first Scene::lights, then emissive meshes, then emissive spheres, each in
 // the scene's order. An emissive surface of zero area is not a light. The sky has the number
 // count(), but no visibility bit, and can be sampled where it is a map. A directional light with an
@@ -45,6 +55,12 @@ class Lights {
   // it is 0, choose() must not be called.
   [[nodiscard]] std::size_t choices() const { return choice_.total() > 0 ? choice_.size() : 0; }
   [[nodiscard]] std::size_t choose(float u, float& probability) const;
+
+  // Sends light out, from a light or the sky, constant or not, that is chosen by power with `choice`.
+  // `where` and `whither` place the ray. The surfaces lie in the sphere around `center`. Returns
+  // false where no light comes from there, or none is to be had at all.
+  [[nodiscard]] bool emit(const Vec3& center, float radius, float choice, const Vec2& where,
+                          const Vec2& whither, Emission& emission) const;
 
   // A ray that scattering sent from `from`. `pdf`: density of `direction` by scattering, 0 for a
   // perfect lobe and for the camera, with which light sampling does not compete. `every`: whether
@@ -96,6 +112,19 @@ class Lights {
   float add(const Mesh& mesh, const Scene& scene);
   float add(const Sphere& sphere, const Scene& scene);
   [[nodiscard]] static Rgb radiance(const Record& light, const Vec2& uv);
+  // These fill everything but the number of the light. `choice` takes one of two sides.
+  void emit_mesh(const Record& light, float choice, Vec2 where, const Vec2& whither,
+                 Emission& emission) const;
+  static void emit_sphere(const Record& light, float choice, const Vec2& where, const Vec2& whither,
+                          Emission& emission);
+  static void emit_point(const Record& light, const Vec2& whither, Emission& emission);
+  // Of the sky for null.
+  void emit_far(const Record* light, const Vec3& center, float radius, const Vec2& where,
+                const Vec2& whither, Emission& emission) const;
+  [[nodiscard]] Vec2 texture_point(const Record& light, std::size_t triangle, float b1,
+                                   float b2) const;
+  // The share of a spot's intensity at this cosine from its axis.
+  [[nodiscard]] static float spot_share(const Record& light, float cosine);
   [[nodiscard]] bool sample_mesh(const Record& light, const Surface& from, Vec2 u,
                                  LightSample& sample) const;
   // `own`: whether `from` lies on the inside of this sphere.
@@ -112,6 +141,7 @@ class Lights {
   std::vector<std::size_t> suns_;
   EnvironmentLight sky_;
   Distribution choice_;
+  Distribution emission_;  // choice_, and a constant sky
 };
 
 }  // namespace psf::render

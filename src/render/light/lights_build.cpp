@@ -59,6 +59,8 @@ Lights::Lights(const Scene& scene, Shapes& shapes, float radius) : sky_(scene) {
   }
   if (sky_.sampled()) powers.push_back(sky_.power() * kPi * radius * radius);
   choice_ = Distribution(powers);
+  if (has_sky() && !sky_.sampled()) powers.push_back(sky_.power() * kPi * radius * radius);
+  emission_ = Distribution(powers);
 }
 
 float Lights::add(const Light& light, float radius) {

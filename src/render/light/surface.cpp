@@ -16,6 +16,15 @@ Vec3 uv_to_direction(const Vec2& uv) {
   return {r * std::sin(longitude), std::sin(latitude), -r * std::cos(longitude)};
 }
 
+Vec3 Surface::bent_into_sight(const Vec3& normal, const Vec3& geometric_normal,
+                              const Vec3& direction) {
+  // An interpolated normal may face away from the viewer at silhouettes.
+  constexpr float kLeastCosine = 1e-3f;
+  const float cosine = -dot(normal, direction);
+  if (cosine >= kLeastCosine || normal == geometric_normal) return normal;
+  return normalize(normal - direction * (kLeastCosine - cosine));
+}
+
 Shapes::Shapes(const Scene& scene) {
   meshes_.reserve(scene.meshes.size());
   for (const Mesh& m : scene.meshes) {
@@ -65,12 +74,7 @@ Surface Shapes::surface(const Hit& hit, const Vec3& direction) const {
   s.front = dot(direction, s.geometric_normal) < 0;
   if (!s.front) s.geometric_normal = -s.geometric_normal;
   if (dot(s.normal, s.geometric_normal) < 0) s.normal = -s.normal;
-  // An interpolated normal may face away from the viewer at silhouettes: bend it just into sight.
-  constexpr float kLeastCosine = 1e-3f;
-  const float cosine = -dot(s.normal, direction);
-  if (cosine < kLeastCosine && s.normal != s.geometric_normal) {
-    s.normal = normalize(s.normal - direction * (kLeastCosine - cosine));
-  }
+  s.normal = Surface::bent_into_sight(s.normal, s.geometric_normal, direction);
   return s;
 }
 

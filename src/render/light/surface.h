@@ -20,6 +20,11 @@ struct Surface {
   int emitter;   // number of its light; kNone: it emits nothing
   bool front;    // the ray met the front side
 
+  // The normal as it is shaded for whoever looks along the unit `direction` at this side: where it
+  // would face away, it is bent just into sight.
+  [[nodiscard]] static Vec3 bent_into_sight(const Vec3& normal, const Vec3& geometric_normal,
+                                            const Vec3& direction);
+
   // The origin of a ray toward `direction`, such that the ray does not meet this surface again.
   [[nodiscard]] Vec3 origin_toward(const Vec3& direction) const {
     return position + geometric_normal * (dot(direction, geometric_normal) > 0 ? offset : -offset);

@@ -117,12 +117,13 @@ bool Transport::select_lobe(Vertex& v, Walk& walk, Sampler& sampler) const {
   return !v.bsdf.perfect() && v.bsdf.roughness() >= settings_.vertex_roughness;
 }
 
-bool Transport::scatter(const Vertex& v, Walk& walk, Sampler& sampler) const {
-  BsdfSample sample;
+bool Transport::sample_scattering(const Vertex& v, Sampler& sampler, BsdfSample& sample,
+                                  Vec3& direction, float& correction) {
   const Vec2 u = v.bsdf.perfect() ? Vec2(0, 0) : sampler.next_2d();
   const float choice = v.bsdf.chooses() ? sampler.next_1d() : 0.0f;
   if (!v.bsdf.sample(v.local, u, choice, sample)) return false;
-  Vec3 direction = v.frame.to_world(sample.direction);
+  direction = v.frame.to_world(sample.direction);
+  correction = flux_correction(v, direction);
   // Where an interpolated normal sends the path through the surface that it should leave (or the
   // other way): a perfect lobe takes the geometric normal, which has no such trouble; other lobes
   // absorb.
@@ -132,14 +133,38 @@ bool Transport::scatter(const Vertex& v, Walk& walk, Sampler& sampler) const {
     const Frame flat(v.surface.geometric_normal);
     if (!v.bsdf.sample(flat.to_local(v.out), u, choice, sample)) return false;
     direction = flat.to_world(sample.direction);
+    correction = 1;
   }
-  walk.throughput = walk.throughput * sample.weight;
+  return true;
+}
+
+bool Transport::go_on(const Vertex& v, const BsdfSample& sample, const Vec3& direction,
+                      Walk& walk) {
   if (is_black(walk.throughput)) return false;
-  walk.eta_scale *= sample.eta_scale;
   walk.pdf = sample.pdf;
   walk.from = v.surface.position;
   walk.ray = {v.surface.origin_toward(direction), normalize(direction)};
   return true;
+}
+
+bool Transport::scatter(const Vertex& v, Walk& walk, Sampler& sampler) const {
+  BsdfSample sample;
+  Vec3 direction;
+  float correction;
+  if (!sample_scattering(v, sampler, sample, direction, correction)) return false;
+  walk.throughput = walk.throughput * sample.weight;
+  walk.eta_scale *= sample.eta_scale;
+  return go_on(v, sample, direction, walk);
+}
+
+bool Transport::scatter_power(const Vertex& v, Walk& walk, Sampler& sampler) const {
+  BsdfSample sample;
+  Vec3 direction;
+  float correction;
+  if (!sample_scattering(v, sampler, sample, direction, correction)) return false;
+  // Power, unlike radiance, does not change with the density of the medium.
+  walk.throughput = walk.throughput * sample.weight * (correction / sample.eta_scale);
+  return go_on(v, sample, direction, walk);
 }
 
 bool Transport::survives(Walk& walk, Sampler& sampler) const {

@@ -23,6 +23,16 @@ struct Vertex {
   Vec3 local;  // `out` in the frame
 };
 
+// What turns f cos for radiance along `v.out`, with light that arrives along `toward`, into that for
+// power that arrives from `v.out` and leaves along `toward`: both are one where the normal is not
+// interpolated (Veach 1997, 5.3).
+[[nodiscard]] inline float flux_correction(const Vertex& v, const Vec3& toward) {
+  if (v.surface.normal == v.surface.geometric_normal) return 1;
+  const Vec3 &s = v.surface.normal, &g = v.surface.geometric_normal;
+  const float below = std::abs(dot(v.out, g) * dot(toward, s));
+  return below > 0 ? std::abs(dot(v.out, s) * dot(toward, g)) / below : 0;
+}
+
 // The state of a path that is being traced.
 struct Walk {
   Ray ray;
@@ -67,6 +77,8 @@ class Transport {
 
   // Sends the walk on from `v`; false where it is absorbed.
   [[nodiscard]] bool scatter(const Vertex& v, Walk& walk, Sampler& sampler) const;
+  // The same for a walk that carries power away from a light instead of radiance toward it.
+  [[nodiscard]] bool scatter_power(const Vertex& v, Walk& walk, Sampler& sampler) const;
   // Russian roulette; false where the path ends.
   [[nodiscard]] bool survives(Walk& walk, Sampler& sampler) const;
 
@@ -74,6 +86,12 @@ class Transport {
   void record_vertex(const Vertex& v, const Walk& walk, PathRecord& record) const;
 
  private:
+  // Samples where light goes on from `v`, in the world. Sets `correction` to flux_correction(); 1
+  // where the geometric normal took the place of the shading normal.
+  [[nodiscard]] static bool sample_scattering(const Vertex& v, Sampler& sampler, BsdfSample& sample,
+                                              Vec3& direction, float& correction);
+  [[nodiscard]] static bool go_on(const Vertex& v, const BsdfSample& sample, const Vec3& direction,
+                                  Walk& walk);
   [[nodiscard]] Rgb direct_from(std::size_t light, float probability, const Vertex& v,
                                 Sampler& sampler, std::uint32_t& visibility, std::uint64_t& rays,
                                 Tally& tally, const Rgb& throughput) const;

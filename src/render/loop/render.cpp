@@ -91,6 +91,7 @@ class Loop {
   [[nodiscard]] Done done_now() const;
 
   const Integrator& integrator_;
+  const Integrator* tracer_ = nullptr;  // of the pass
   Space space_;
   const RenderSettings& settings_;
   formats::Writer* writer_;
@@ -163,6 +164,10 @@ RenderResult Loop::run() {
 }
 
 void Loop::trace_pass(std::uint64_t pass) {
+  std::uint64_t rays = 0;
+  const auto made = integrator_.for_pass(settings_.sampler, pass, rays);
+  rays_ += rays;
+  tracer_ = made != nullptr ? made.get() : &integrator_;
   for (std::size_t camera = 0; camera < views_.size(); ++camera) {
     const std::size_t pixels = views_[camera].pixels();
     for (std::size_t first = 0; first < pixels; first += kSlab) {
@@ -223,7 +228,7 @@ void Loop::trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path
   const Vec2 lens = view.rays.has_lens() ? sampler.next_2d() : Vec2(0, 0);
   const bool shade = shade_rate_.shaded(x, y, pass);
   const LayerSums& sums = layers.cleared();
-  PathRecord record = integrator_.trace(view.rays.ray(position, lens), sampler, shade, rays, sums);
+  PathRecord record = tracer_->trace(view.rays.ray(position, lens), sampler, shade, rays, sums);
   // Without a vertex it is not shaded either way; the flag says that it counts.
   if (!record.has_vertex && settings_.shade_rate > 1) record.shaded = shade;
   recorder.set(slot, camera, y * view.width + x, in_world(record, space_), sums);

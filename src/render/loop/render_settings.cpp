@@ -27,6 +27,17 @@ void RenderSettings::validate(const Scene& scene) const {
     pixels += static_cast<double>(scene.cameras[k].width) * scene.cameras[k].height;
   }
   const double paths = pixels * static_cast<double>(passes);
+  const bool photons = integrator.name == "photon", vpls = integrator.name == "vpl";
+  const bool of_pixels = vpls && integrator.vpl_set == VplSet::pixel;
+  const double light_paths = static_cast<double>(passes) * (photons ? integrator.photon_paths
+                                                            : vpls  ? integrator.vpl_paths
+                                                                    : 0u);
+  if (light_paths >= 0x1p40 ||
+      (of_pixels && paths * integrator.split * integrator.vpl_paths >= 0x1p48)) {
+    throw Error(ErrorCode::limit,
+                "more than 2^40 light paths, or 2^48 drawn for the pixels; lower the passes or the "
+                "light paths");
+  }
   if (chosen.size() > 65535 || pixels >= 0x1p32 || paths >= 0x1p40 ||
       paths * integrator.split >= 0x1p48) {
     throw Error(ErrorCode::limit,

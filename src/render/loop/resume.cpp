@@ -20,6 +20,16 @@ Json unlisted_settings(const RenderSettings& settings) {
              {"max_depth", integrator.max_depth},
              {"roulette_depth", integrator.roulette_depth}};
   if (std::isfinite(integrator.ao_distance)) state["ao_distance"] = integrator.ao_distance;
+  if (integrator.name == "vpl") {
+    state["vpl_paths"] = integrator.vpl_paths;
+    state["vpl_set"] = integrator.vpl_set == VplSet::pass ? "pass" : "pixel";
+    state["vpl_distance"] = integrator.vpl_distance;
+  }
+  if (integrator.name == "photon") {
+    state["photon_paths"] = integrator.photon_paths;
+    state["photon_radius"] = integrator.photon_radius;
+    state["photon_delta"] = integrator.photon_delta;
+  }
   return state;
 }
 

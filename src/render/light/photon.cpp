@@ -1,0 +1,73 @@
+// Photon mapping: `direct`, and the density of photons around x_i for what is reflected between
+// surfaces. The radius shrinks with the passes as that of progressive photon mapping does (Hachisuka
+// et al. 2008; passes that know only their number: Knaus and Zwicker 2011).
+#include <cassert>
+
+#include "render/light/integrators.h"
+#include "render/light/photon_map.h"
+#include "render/light/vertex_integrator.h"
+
+namespace psf::render {
+
+namespace {
+
+// The standard radius, as a part of the scene's.
+constexpr float kRadius = 0.01f;
+
+class PhotonIntegrator final : public VertexIntegrator {
+ public:
+  // `map`, `radius`: of a pass.
+  explicit PhotonIntegrator(std::shared_ptr<const LitScene> lit,
+                            std::shared_ptr<const PhotonMap> map = nullptr, float radius = 0)
+      : VertexIntegrator(std::move(lit)), map_(std::move(map)), radius_(radius) {}
+
+  std::unique_ptr<const Integrator> for_pass(const SamplerSettings& sampler, std::uint64_t pass,
+                                             std::uint64_t& rays) const override {
+    const IntegratorSettings& settings = transport().settings();
+    const float asked = settings.photon_radius;
+    const float first = asked > 0 ? asked : kRadius * transport().accel().radius();
+    const auto number = static_cast<double>(pass + 1);
+    const double shrunk = std::pow(number, -0.5 * double{settings.photon_delta});
+    return std::make_unique<PhotonIntegrator>(
+        lit(), std::make_shared<const PhotonMap>(transport(), sampler, pass, rays),
+        static_cast<float>(double{first} * shrunk));
+  }
+
+ private:
+  Rgb gather(const Vertex& x, int depth, Branch& branch) const override {
+    Rgb sum;
+    Walk walk;
+    Surface surface;
+    static_cast<void>(gather_direct(x, depth, branch, walk, surface, sum));
+    return sum;
+  }
+
+  Rgb gather_once(const Vertex& x, int depth, const Sampler&, std::uint64_t&,
+                  Tally tally) const override {
+    assert(map_ != nullptr);
+    tally.bounce();
+    Rgb sum(0, 0, 0);
+    // x itself is the last surface that a photon met, and the camera's path has counted it.
+    const int most_depth = transport().settings().max_depth - depth + 1;
+    map_->estimate(x, radius_, most_depth, [&](const Photon& photon, const Rgb& radiance) {
+      if (tally.wants_diffuse()) {
+        tally.set_diffuse(x.bsdf.diffuse_share(x.local, x.frame.to_local(photon.direction)));
+      }
+      tally.add(photon.light, radiance);
+      sum += radiance;
+    });
+    return sum;
+  }
+
+  std::shared_ptr<const PhotonMap> map_;
+  float radius_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_photon_integrator(const Scene& scene,
+                                                   const IntegratorSettings& settings) {
+  return std::make_unique<PhotonIntegrator>(std::make_shared<const LitScene>(scene, settings));
+}
+
+}  // namespace psf::render

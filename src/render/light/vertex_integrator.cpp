@@ -1,0 +1,122 @@
+// From the camera to x_i, and the steps behind it that several integrators take.
+#include "render/light/vertex_integrator.h"
+
+namespace psf::render {
+
+PathRecord VertexIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool shade,
+                                   std::uint64_t& rays, const LayerSums& layers) const {
+  const Transport& transport = lit_->transport;
+  PathRecord record;
+  Walk walk;
+  walk.ray = camera_ray;
+  walk.from = camera_ray.origin;
+  Tally seen = Tally::of_camera(lit_->plan, layers);
+  std::uint32_t no_bits = 0;
+  for (;;) {
+    Surface surface;
+    const float distance = transport.next_surface(walk, surface, rays);
+    if (std::isinf(distance)) {
+      record.unfiltered += transport.met(walk, nullptr, seen);
+      return record;
+    }
+    record.distance += distance;
+    record.unfiltered += transport.met(walk, &surface, seen);
+    if (!enter(walk)) return record;
+    Vertex v = transport.vertex(surface, walk.ray.direction);
+    if (v.bsdf.black()) return record;
+    if (transport.select_lobe(v, walk, sampler)) {
+      transport.record_vertex(v, walk, record);
+      if (shade) {
+        shade_vertex(v, walk, sampler, rays, layers, record);
+        return record;
+      }
+      // Whom it may be averaged with must be known: the same shadow rays, and nothing else.
+      Tally none;
+      static_cast<void>(transport.direct(v, transport.samples_every_light(), sampler,
+                                         record.visibility, rays, none, walk.throughput));
+      record.hit_distance = std::numeric_limits<float>::quiet_NaN();
+      return record;
+    }
+    record.unfiltered +=
+        walk.throughput * transport.direct(v, false, sampler, no_bits, rays, seen, walk.throughput);
+    walk.every_light = false;
+    if (!transport.scatter(v, walk, sampler) || !transport.survives(walk, sampler)) return record;
+  }
+}
+
+void VertexIntegrator::shade_vertex(const Vertex& x, const Walk& walk, Sampler& sampler,
+                                    std::uint64_t& rays, const LayerSums& layers,
+                                    PathRecord& record) const {
+  record.shaded = true;
+  const std::uint32_t split = transport().settings().split;
+  const Sampler here = sampler;
+  const auto tally = [&] { return Tally::of_vertex(lit_->plan, layers); };
+  if (split <= 1) {
+    Branch branch{sampler, record.visibility, record.hit_distance, rays, tally()};
+    record.contribution = gather(x, walk.depth, branch);
+  } else {
+    std::uint32_t no_bits = 0;
+    float no_distance;
+    for (std::uint32_t k = 0; k < split; ++k) {
+      Sampler continued = sampler.split(k, split);
+      Branch branch{continued, k == 0 ? record.visibility : no_bits,
+                    k == 0 ? record.hit_distance : no_distance, rays, tally()};
+      record.contribution += gather(x, walk.depth, branch);
+    }
+    record.contribution *= 1 / static_cast<float>(split);
+    for (Rgb& layer : layers.contribution) layer *= 1 / static_cast<float>(split);
+  }
+  record.contribution += gather_once(x, walk.depth, here, rays, tally());
+}
+
+Rgb VertexIntegrator::gather_once(const Vertex&, int, const Sampler&, std::uint64_t&, Tally) const {
+  return {0, 0, 0};
+}
+
+bool VertexIntegrator::gather_direct(const Vertex& x, int depth, Branch& branch, Walk& walk,
+                                     Surface& surface, Rgb& sum) const {
+  const Transport& transport = lit_->transport;
+  const bool every = transport.samples_every_light();
+  sum = transport.direct(x, every, branch.sampler, branch.visibility, branch.rays, branch.tally,
+                         Rgb(1, 1, 1));
+  branch.hit_distance = std::numeric_limits<float>::infinity();
+  walk.depth = depth;
+  walk.every_light = every;
+  if (!transport.scatter(x, walk, branch.sampler)) return false;
+  if (branch.tally.wants_diffuse()) {
+    branch.tally.set_diffuse(
+        walk.pdf > 0 ? x.bsdf.diffuse_share(x.local, x.frame.to_local(walk.ray.direction))
+                     : Rgb(0, 0, 0));
+  }
+  branch.tally.leave_vertex();
+  branch.hit_distance = transport.next_surface(walk, surface, branch.rays);
+  const bool escaped = std::isinf(branch.hit_distance);
+  sum += transport.met(walk, escaped ? nullptr : &surface, branch.tally);
+  branch.tally.bounce();
+  return !escaped;
+}
+
+bool VertexIntegrator::enter(Walk& walk) const {
+  if (walk.depth >= transport().settings().max_depth) return false;
+  ++walk.depth;
+  return true;
+}
+
+void VertexIntegrator::follow(Vertex v, Walk& walk, Branch& branch, Rgb& sum) const {
+  const Transport& transport = lit_->transport;
+  std::uint32_t no_bits = 0;
+  while (!v.bsdf.black()) {
+    sum += walk.throughput * transport.direct(v, false, branch.sampler, no_bits, branch.rays,
+                                              branch.tally, walk.throughput);
+    walk.every_light = false;
+    if (!transport.scatter(v, walk, branch.sampler)) return;
+    if (!transport.survives(walk, branch.sampler)) return;
+    Surface surface;
+    const bool escaped = std::isinf(transport.next_surface(walk, surface, branch.rays));
+    sum += transport.met(walk, escaped ? nullptr : &surface, branch.tally);
+    if (escaped || !enter(walk)) return;
+    v = transport.vertex(surface, walk.ray.direction);
+  }
+}
+
+}  // namespace psf::render

@@ -1,0 +1,65 @@
+// The walk from the camera to x_i, which all integrators of light share; what they add is c_i.
+#pragma once
+
+#include <memory>
+
+#include "render/light/integrator.h"
+#include "render/light/tally.h"
+#include "render/light/transport.h"
+
+namespace psf::render {
+
+// The scene ready for rays, and the layers of its light.
+struct LitScene {
+  LitScene(const Scene& scene, const IntegratorSettings& settings)
+      : transport(scene, settings), plan(settings.layers, transport.lights()) {}
+  Transport transport;
+  LayerPlan plan;
+};
+
+class VertexIntegrator : public Integrator {
+ public:
+  explicit VertexIntegrator(std::shared_ptr<const LitScene> lit) : lit_(std::move(lit)) {}
+
+  PathRecord trace(const Ray& camera_ray, Sampler& sampler, bool shade, std::uint64_t& rays,
+                   const LayerSums& layers) const override;
+  const std::vector<LayerInfo>& layers() const override { return lit_->plan.layers(); }
+  std::vector<std::string> light_names() const override { return lit_->transport.lights().names(); }
+
+ protected:
+  [[nodiscard]] const std::shared_ptr<const LitScene>& lit() const { return lit_; }
+  [[nodiscard]] const Transport& transport() const { return lit_->transport; }
+
+  // What one continuation from x_i computes, beside its part of c_i.
+  struct Branch {
+    Sampler& sampler;
+    std::uint32_t& visibility;
+    float& hit_distance;
+    std::uint64_t& rays;
+    Tally tally;
+  };
+  // The radiance that one continuation from x_i, at this depth of the path, brings back.
+  [[nodiscard]] virtual Rgb gather(const Vertex& x, int depth, Branch& branch) const = 0;
+  // A part of c_i that is the same for every continuation of a path; `sampler` is where x_i is.
+  [[nodiscard]] virtual Rgb gather_once(const Vertex& x, int depth, const Sampler& sampler,
+                                        std::uint64_t& rays, Tally tally) const;
+
+  // Adds to `sum` the light that lights send straight to x, as light sampling and one scattered ray
+  // find it together. Returns whether the ray met a surface: then `walk` has arrived at `surface`,
+  // and what that reflects is still to be added.
+  [[nodiscard]] bool gather_direct(const Vertex& x, int depth, Branch& branch, Walk& walk,
+                                   Surface& surface, Rgb& sum) const;
+  // Counts the surface at which the walk has arrived; false where the path may not go on.
+  [[nodiscard]] bool enter(Walk& walk) const;
+  // Adds to `sum` the light that `v` scatters back along the walk, without what v emits.
+  void follow(Vertex v, Walk& walk, Branch& branch, Rgb& sum) const;
+
+ private:
+  // Fills c_i and what comes with it.
+  void shade_vertex(const Vertex& x, const Walk& walk, Sampler& sampler, std::uint64_t& rays,
+                    const LayerSums& layers, PathRecord& record) const;
+
+  std::shared_ptr<const LitScene> lit_;
+};
+
+}  // namespace psf::render
