@@ -11,7 +11,7 @@ namespace psf::tests {
 class FakeIntegrator : public render::Integrator {
  public:
   render::PathRecord trace(const render::Ray& ray, render::Sampler& sampler, bool shade,
-                           std::uint64_t& rays, const render::LayerSums&) const override {
+                           std::uint64_t& rays, const render::PathDetails&) const override {
     rays += 3;
     render::PathRecord record;
     const Vec2 u = sampler.next_2d();

@@ -23,6 +23,7 @@ constexpr const char* kTransport = "Light transport";
 constexpr const char* kScene = "Camera and light, over those of the scene";
 constexpr const char* kColour = "three numbers R,G,B of at least 0 or one for grey";
 constexpr std::uint32_t kMostLightPaths = 1u << 27;
+constexpr std::uint32_t kAllVertices = std::numeric_limits<std::uint16_t>::max();
 constexpr float kLongest = std::numeric_limits<float>::max();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -164,6 +165,20 @@ void add_output(std::vector<Option>& table) {
        {"bounces", LayerKind::bounces},
        {"lobes", LayerKind::lobes}},
       "also write the light by lights, by direct and indirect, or by diffuse and glossy"));
+  table.push_back(
+      parsed("vertices", "all|N", kOutput, "all or a whole number of at least 1",
+             "also write every vertex of every path, or its first N, as the table vertices",
+             [](Job& job, const std::string& text) {
+               const auto most =
+                   text == "all" ? std::optional(kAllVertices) : parse_number<std::uint32_t>(text);
+               if (!most || *most == 0) return false;
+               job.settings.integrator.vertices = *most;
+               return true;
+             }));
+  table.push_back(number(
+      "photons", kOutput, [](Job & j) -> auto& { return j.settings.integrator.photons; },
+      std::uint32_t{0}, kMostLightPaths,
+      "also write the vertices of N paths from the lights a pass, as the table photons"));
 }
 
 void add_sampling(std::vector<Option>& table) {

@@ -13,7 +13,7 @@ class AoIntegrator final : public Integrator {
       : transport_(scene, settings) {}
 
   PathRecord trace(const Ray& camera_ray, Sampler& sampler, bool shade, std::uint64_t& rays,
-                   const LayerSums& layers) const override;
+                   const PathDetails& details) const override;
   const std::vector<LayerInfo>& layers() const override { return no_layers_; }
   std::vector<std::string> light_names() const override { return {}; }
 
@@ -26,7 +26,7 @@ class AoIntegrator final : public Integrator {
 };
 
 PathRecord AoIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool shade,
-                               std::uint64_t& rays, const LayerSums&) const {
+                               std::uint64_t& rays, const PathDetails&) const {
   const IntegratorSettings& settings = transport_.settings();
   PathRecord record;
   Walk walk;

@@ -45,7 +45,17 @@ std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Integrator
   if (settings.name == "ao" && settings.layers != LayerKind::none) {
     throw Error(ErrorCode::usage, "`layers`: the integrator ao has no light to divide");
   }
-  if (settings.name == "path" || settings.name == "direct") {
+  const bool chains = settings.name == "path" || settings.name == "direct";
+  if (settings.vertices > 0 && (!chains || settings.split > 1)) {
+    throw Error(
+        ErrorCode::usage,
+        "`vertices`: only the paths of the integrators path and direct, without `split`, are "
+        "chains of vertices");
+  }
+  if (settings.photons > 0 && settings.name == "ao") {
+    throw Error(ErrorCode::usage, "`photons`: the integrator ao has no lights");
+  }
+  if (chains) {
     return make_path_integrator(scene, settings);
   }
   if (settings.name == "vpl") return make_vpl_integrator(scene, settings);

@@ -46,6 +46,7 @@
 
 #include "core/vec.h"
 #include "render/light/layers.h"
+#include "render/light/trail.h"
 #include "render/sample/sampler.h"
 #include "render/scene/scene.h"
 
@@ -102,7 +103,14 @@ struct IntegratorSettings {
   float photon_radius = 0;              // in world units; 0: chosen by the scene's size
   float photon_delta = 1.0f / 3;        // how the radius shrinks with the passes, 0 to < 1
   LayerKind layers = LayerKind::none;  // layers of the light that a path is divided into; not of ao
+  // The most vertices of a path that its trail is to have; 0: no trail. For path and direct, without
+  // split, whose paths are chains.
+  std::uint32_t vertices = 0;
+  std::uint32_t photons =
+      0;  // light paths of a pass whose vertices are to be told; 0: none; not of ao
 };
+
+class Transport;
 
 class Integrator {
  public:
@@ -115,14 +123,18 @@ class Integrator {
                                                                    std::uint64_t pass,
                                                                    std::uint64_t& rays) const;
   // Traces a path. Without `shade` it stops at x_i, and c_i is not computed. Adds the number of
-  // rays that it shot to `rays`, and to each of `layers`, which are none or those of layers(),
-  // its parts of c_i and u_i. Thread-safe.
+  // rays that it shot to `rays`. Of `details` it tells what is wanted: to each of the layers, which
+  // are none or those of layers(), it adds its parts of c_i and u_i; the trail gets its vertices.
+  // Thread-safe.
   [[nodiscard]] virtual PathRecord trace(const Ray& camera_ray, Sampler& sampler, bool shade,
-                                         std::uint64_t& rays, const LayerSums& layers) const = 0;
+                                         std::uint64_t& rays, const PathDetails& details) const = 0;
   [[nodiscard]] PathRecord trace(const Ray& camera_ray, Sampler& sampler, bool shade,
                                  std::uint64_t& rays) const {
     return trace(camera_ray, sampler, shade, rays, {});
   }
+  // The scene as it is ready for rays, for those that start at the lights; null where this
+  // integrator knows no light.
+  [[nodiscard]] virtual const Transport* light_transport() const { return nullptr; }
   // The layers of the light, as IntegratorSettings::layers asks for them.
   [[nodiscard]] virtual const std::vector<LayerInfo>& layers() const = 0;
   // The names of the lights in the order of their numbers; light l has visibility bit l mod 32.

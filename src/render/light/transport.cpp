@@ -4,6 +4,22 @@
 #include <map>
 
 namespace psf::render {
+namespace {
+
+constexpr float kEndless = std::numeric_limits<float>::infinity();
+
+// As the trail has it: a rough lobe is the one that scatters most of the light this way.
+std::uint8_t lobe_of(const Vertex& v, const BsdfSample& sample) {
+  Lobe lobe = Lobe::perfect;
+  if (sample.pdf > 0) {
+    const Rgb share = v.bsdf.diffuse_share(v.local, sample.direction);
+    lobe = luminance(share) >= 0.5f ? Lobe::diffuse : Lobe::glossy;
+  }
+  const bool transmitted = sample.direction.z < 0;
+  return static_cast<std::uint8_t>(static_cast<int>(lobe) | (transmitted ? kTransmitted : 0));
+}
+
+}  // namespace
 
 Transport::Transport(const Scene& scene, const IntegratorSettings& settings)
     : scene_(scene),
@@ -33,6 +49,7 @@ float Transport::next_surface(const Walk& walk, Surface& surface, std::uint64_t&
     return std::numeric_limits<float>::infinity();
   }
   surface = shapes_.surface(hit, walk.ray.direction);
+  if (walk.trail != nullptr) walk.trail->arrive(surface, walk.ray.direction, hit.distance);
   return hit.distance;
 }
 
@@ -47,11 +64,15 @@ Rgb Transport::met(const Walk& walk, const Surface* surface, Tally& tally) const
   if (surface != nullptr && surface->emitter == kNone) return {0, 0, 0};
   const Lights::Arrival arrival{walk.from, walk.ray.direction, walk.pdf, walk.every_light};
   if (surface == nullptr) {
-    return walk.throughput * lights_.escaped(arrival, [&](std::size_t light, const Rgb& part) {
+    const Rgb sky = lights_.escaped(arrival, [&](std::size_t light, const Rgb& part) {
       tally.add(light, walk.throughput * part);
     });
+    if (walk.trail != nullptr) walk.trail->meet(sky, true);
+    return walk.throughput * sky;
   }
-  const Rgb radiance = walk.throughput * lights_.emitted(arrival, *surface);
+  const Rgb emission = lights_.emitted(arrival, *surface);
+  if (walk.trail != nullptr) walk.trail->meet(emission, false);
+  const Rgb radiance = walk.throughput * emission;
   tally.add(static_cast<std::size_t>(surface->emitter), radiance);
   return radiance;
 }
@@ -112,7 +133,9 @@ bool Transport::select_lobe(Vertex& v, Walk& walk, Sampler& sampler) const {
     const float glossy = v.bsdf.glossy_probability(v.local);
     const bool take_glossy = sampler.next_1d() < glossy;
     v.bsdf.keep(take_glossy ? Bsdf::kGlossy : Bsdf::kDiffuse);
-    walk.throughput *= 1 / (take_glossy ? glossy : 1 - glossy);
+    const float counts = 1 / (take_glossy ? glossy : 1 - glossy);
+    walk.throughput *= counts;
+    if (walk.trail != nullptr) walk.trail->scale(counts);
   }
   return !v.bsdf.perfect() && v.bsdf.roughness() >= settings_.vertex_roughness;
 }
@@ -148,13 +171,23 @@ bool Transport::go_on(const Vertex& v, const BsdfSample& sample, const Vec3& dir
 }
 
 bool Transport::scatter(const Vertex& v, Walk& walk, Sampler& sampler) const {
+  if (walk.trail != nullptr) tell(v, walk);
   BsdfSample sample;
   Vec3 direction;
   float correction;
   if (!sample_scattering(v, sampler, sample, direction, correction)) return false;
   walk.throughput = walk.throughput * sample.weight;
   walk.eta_scale *= sample.eta_scale;
-  return go_on(v, sample, direction, walk);
+  if (!go_on(v, sample, direction, walk)) return false;
+  if (walk.trail != nullptr) {
+    walk.trail->leave(walk.ray.direction, sample.pdf > 0 ? sample.pdf : kEndless, sample.weight,
+                      lobe_of(v, sample));
+  }
+  return true;
+}
+
+void Transport::tell(const Vertex& v, const Walk& walk) {
+  walk.trail->scatters(v.bsdf.albedo(), v.bsdf.perfect() ? 0 : v.bsdf.least_roughness());
 }
 
 bool Transport::scatter_power(const Vertex& v, Walk& walk, Sampler& sampler) const {
@@ -171,9 +204,10 @@ bool Transport::survives(Walk& walk, Sampler& sampler) const {
   if (walk.depth < settings_.roulette_depth) return true;
   const float q = max_component(walk.throughput) / walk.eta_scale;
   if (q >= 1) return true;
-  if (sampler.next_1d() >= q) return false;
-  walk.throughput *= 1 / q;
-  return true;
+  const bool survived = sampler.next_1d() < q;
+  if (walk.trail != nullptr) survived ? walk.trail->survive(1 / q) : walk.trail->end();
+  if (survived) walk.throughput *= 1 / q;
+  return survived;
 }
 
 void Transport::record_vertex(const Vertex& v, const Walk& walk, PathRecord& record) const {
@@ -185,6 +219,9 @@ void Transport::record_vertex(const Vertex& v, const Walk& walk, PathRecord& rec
   record.direction = v.out;
   record.material = static_cast<std::uint32_t>(v.surface.material);
   record.roughness = v.bsdf.least_roughness();
+  if (walk.trail == nullptr) return;
+  tell(v, walk);
+  walk.trail->select();
 }
 
 }  // namespace psf::render

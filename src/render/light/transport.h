@@ -42,6 +42,7 @@ struct Walk {
   bool every_light = false;  // the last vertex sampled every light
   Vec3 from{0, 0, 0};        // the last vertex
   int depth = 0;             // surface interactions so far
+  Trail* trail = nullptr;    // gets the vertices of the path, where they are wanted
 };
 
 class Transport {
@@ -92,6 +93,8 @@ class Transport {
                                               Vec3& direction, float& correction);
   [[nodiscard]] static bool go_on(const Vertex& v, const BsdfSample& sample, const Vec3& direction,
                                   Walk& walk);
+  // Tells the trail how `v` scatters.
+  static void tell(const Vertex& v, const Walk& walk);
   [[nodiscard]] Rgb direct_from(std::size_t light, float probability, const Vertex& v,
                                 Sampler& sampler, std::uint32_t& visibility, std::uint64_t& rays,
                                 Tally& tally, const Rgb& throughput) const;

@@ -4,13 +4,14 @@
 namespace psf::render {
 
 PathRecord VertexIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool shade,
-                                   std::uint64_t& rays, const LayerSums& layers) const {
+                                   std::uint64_t& rays, const PathDetails& details) const {
   const Transport& transport = lit_->transport;
   PathRecord record;
   Walk walk;
   walk.ray = camera_ray;
   walk.from = camera_ray.origin;
-  Tally seen = Tally::of_camera(lit_->plan, layers);
+  walk.trail = details.trail;
+  Tally seen = Tally::of_camera(lit_->plan, details.layers);
   std::uint32_t no_bits = 0;
   for (;;) {
     Surface surface;
@@ -27,7 +28,7 @@ PathRecord VertexIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool
     if (transport.select_lobe(v, walk, sampler)) {
       transport.record_vertex(v, walk, record);
       if (shade) {
-        shade_vertex(v, walk, sampler, rays, layers, record);
+        shade_vertex(v, walk, sampler, rays, details, record);
         return record;
       }
       // Whom it may be averaged with must be known: the same shadow rays, and nothing else.
@@ -37,22 +38,23 @@ PathRecord VertexIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool
       record.hit_distance = std::numeric_limits<float>::quiet_NaN();
       return record;
     }
-    record.unfiltered +=
-        walk.throughput * transport.direct(v, false, sampler, no_bits, rays, seen, walk.throughput);
+    const Rgb direct = transport.direct(v, false, sampler, no_bits, rays, seen, walk.throughput);
+    record.unfiltered += walk.throughput * direct;
+    if (walk.trail != nullptr) walk.trail->add_direct(direct);
     walk.every_light = false;
     if (!transport.scatter(v, walk, sampler) || !transport.survives(walk, sampler)) return record;
   }
 }
 
 void VertexIntegrator::shade_vertex(const Vertex& x, const Walk& walk, Sampler& sampler,
-                                    std::uint64_t& rays, const LayerSums& layers,
+                                    std::uint64_t& rays, const PathDetails& details,
                                     PathRecord& record) const {
   record.shaded = true;
   const std::uint32_t split = transport().settings().split;
   const Sampler here = sampler;
-  const auto tally = [&] { return Tally::of_vertex(lit_->plan, layers); };
+  const auto tally = [&] { return Tally::of_vertex(lit_->plan, details.layers); };
   if (split <= 1) {
-    Branch branch{sampler, record.visibility, record.hit_distance, rays, tally()};
+    Branch branch{sampler, record.visibility, record.hit_distance, rays, tally(), details.trail};
     record.contribution = gather(x, walk.depth, branch);
   } else {
     std::uint32_t no_bits = 0;
@@ -64,7 +66,7 @@ void VertexIntegrator::shade_vertex(const Vertex& x, const Walk& walk, Sampler& 
       record.contribution += gather(x, walk.depth, branch);
     }
     record.contribution *= 1 / static_cast<float>(split);
-    for (Rgb& layer : layers.contribution) layer *= 1 / static_cast<float>(split);
+    for (Rgb& layer : details.layers.contribution) layer *= 1 / static_cast<float>(split);
   }
   record.contribution += gather_once(x, walk.depth, here, rays, tally());
 }
@@ -79,6 +81,8 @@ bool VertexIntegrator::gather_direct(const Vertex& x, int depth, Branch& branch,
   const bool every = transport.samples_every_light();
   sum = transport.direct(x, every, branch.sampler, branch.visibility, branch.rays, branch.tally,
                          Rgb(1, 1, 1));
+  if (branch.trail != nullptr) branch.trail->add_direct(sum);
+  walk.trail = branch.trail;
   branch.hit_distance = std::numeric_limits<float>::infinity();
   walk.depth = depth;
   walk.every_light = every;
@@ -106,8 +110,10 @@ void VertexIntegrator::follow(Vertex v, Walk& walk, Branch& branch, Rgb& sum) co
   const Transport& transport = lit_->transport;
   std::uint32_t no_bits = 0;
   while (!v.bsdf.black()) {
-    sum += walk.throughput * transport.direct(v, false, branch.sampler, no_bits, branch.rays,
-                                              branch.tally, walk.throughput);
+    const Rgb direct = transport.direct(v, false, branch.sampler, no_bits, branch.rays,
+                                        branch.tally, walk.throughput);
+    sum += walk.throughput * direct;
+    if (walk.trail != nullptr) walk.trail->add_direct(direct);
     walk.every_light = false;
     if (!transport.scatter(v, walk, branch.sampler)) return;
     if (!transport.survives(walk, branch.sampler)) return;

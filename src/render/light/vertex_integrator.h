@@ -22,8 +22,9 @@ class VertexIntegrator : public Integrator {
   explicit VertexIntegrator(std::shared_ptr<const LitScene> lit) : lit_(std::move(lit)) {}
 
   PathRecord trace(const Ray& camera_ray, Sampler& sampler, bool shade, std::uint64_t& rays,
-                   const LayerSums& layers) const override;
+                   const PathDetails& details) const override;
   const std::vector<LayerInfo>& layers() const override { return lit_->plan.layers(); }
+  const Transport* light_transport() const override { return &lit_->transport; }
   std::vector<std::string> light_names() const override { return lit_->transport.lights().names(); }
 
  protected:
@@ -37,6 +38,7 @@ class VertexIntegrator : public Integrator {
     float& hit_distance;
     std::uint64_t& rays;
     Tally tally;
+    Trail* trail = nullptr;
   };
   // The radiance that one continuation from x_i, at this depth of the path, brings back.
   [[nodiscard]] virtual Rgb gather(const Vertex& x, int depth, Branch& branch) const = 0;
@@ -57,7 +59,7 @@ class VertexIntegrator : public Integrator {
  private:
   // Fills c_i and what comes with it.
   void shade_vertex(const Vertex& x, const Walk& walk, Sampler& sampler, std::uint64_t& rays,
-                    const LayerSums& layers, PathRecord& record) const;
+                    const PathDetails& details, PathRecord& record) const;
 
   std::shared_ptr<const LitScene> lit_;
 };

@@ -16,15 +16,18 @@
 #include "core/seconds.h"
 #include "formats/read/reader.h"
 #include "render/camera/camera.h"
+#include "render/loop/photon_table.h"
 #include "render/loop/recorder.h"
 #include "render/loop/resume.h"
 #include "render/loop/shade_rate.h"
+#include "render/loop/vertex_table.h"
 
 namespace psf::render {
 namespace {
 
-constexpr std::size_t kSlab = std::size_t{1} << 18;  // records traced before they are written
-constexpr std::size_t kGrain = 1024;                 // paths a task
+constexpr std::size_t kSlab = std::size_t{1} << 18;        // records traced before they are written
+constexpr std::size_t kVertexSlab = std::size_t{1} << 16;  // the same with the vertices of paths
+constexpr std::size_t kGrain = 1024;                       // paths a task
 
 using core::Clock;
 using core::seconds_since;
@@ -53,6 +56,14 @@ class LayerSpace {
   LayerSums sums_;
 };
 
+// What a slab of paths gives to the file.
+struct Slab {
+  Slab(std::size_t paths, std::span<const LayerInfo> layers)
+      : records(paths, layers), vertices(core::range_count(paths, kGrain)) {}
+  Recorder records;
+  std::vector<std::vector<VertexRow>> vertices;  // of each task
+};
+
 class Loop {
  public:
   Loop(const Scene& scene, const Integrator& integrator, const RenderSettings& settings,
@@ -72,8 +83,10 @@ class Loop {
       largest = std::max(largest, views_.back().pixels());
       result_.films.emplace_back(camera.width, camera.height);
     }
-    for (auto& slab : slabs_)
-      slab = std::make_unique<Recorder>(std::min(kSlab, largest), integrator.layers());
+    if (settings.integrator.vertices > 0) slab_ = kVertexSlab;
+    for (auto& slab : slabs_) {
+      slab = std::make_unique<Slab>(std::min(slab_, largest), integrator.layers());
+    }
   }
 
   // Takes up what a resumed file holds.
@@ -84,8 +97,10 @@ class Loop {
   void replay();
   void trace_pass(std::uint64_t pass);
   void trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t first, std::size_t count);
-  void trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path, Recorder& recorder,
-                  std::size_t slot, LayerSpace& layers, std::uint64_t& rays) const;
+  void trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path, Slab& slab,
+                  std::size_t slot, LayerSpace& layers, Trail* trail, std::uint64_t& rays) const;
+  void write_photons(std::uint64_t pass);
+  void write_vertices(Slab& slab);
   void emit(std::uint64_t pass, std::uint16_t camera, std::size_t count);
   void wait_for_output();
   [[nodiscard]] Done done_now() const;
@@ -107,8 +122,8 @@ class Loop {
   RenderResult result_;
   // Two slabs in turn: one is traced while the other is written. The future comes last, so that it
   // is waited for before anything it uses goes.
-  std::array<std::unique_ptr<Recorder>, 2> slabs_;
-  std::size_t current_ = 0;
+  std::array<std::unique_ptr<Slab>, 2> slabs_;
+  std::size_t current_ = 0, slab_ = kSlab;  // slab_: paths of one
   std::future<void> output_;
 };
 
@@ -127,13 +142,13 @@ void Loop::resume(const formats::Head& head) {
 void Loop::replay() {
   const formats::Reader reader(writer_->path());
   core::Progress progress("read back", settings_.quiet);
-  Recorder& recorder = *slabs_[0];
+  Recorder& recorder = slabs_[0]->records;
   std::uint64_t path = 0;
   while (path < reader.records()) {
     for (std::size_t camera = 0; camera < views_.size(); ++camera) {
       const std::size_t pixels = views_[camera].pixels();
-      for (std::size_t first = 0; first < pixels; first += kSlab) {
-        const std::size_t count = std::min(kSlab, pixels - first);
+      for (std::size_t first = 0; first < pixels; first += slab_) {
+        const std::size_t count = std::min(slab_, pixels - first);
         core::throw_if_interrupted("nothing was added to the file");
         recorder.load(reader, path, count);
         (void)recorder.add_to(result_.films[camera], count, settings_.shade_rate);
@@ -168,10 +183,11 @@ void Loop::trace_pass(std::uint64_t pass) {
   const auto made = integrator_.for_pass(settings_.sampler, pass, rays);
   rays_ += rays;
   tracer_ = made != nullptr ? made.get() : &integrator_;
+  if (writer_ != nullptr && settings_.integrator.photons > 0) write_photons(pass);
   for (std::size_t camera = 0; camera < views_.size(); ++camera) {
     const std::size_t pixels = views_[camera].pixels();
-    for (std::size_t first = 0; first < pixels; first += kSlab) {
-      const std::size_t count = std::min(kSlab, pixels - first);
+    for (std::size_t first = 0; first < pixels; first += slab_) {
+      const std::size_t count = std::min(slab_, pixels - first);
       trace_slab(pass, static_cast<std::uint16_t>(camera), first, count);
       emit(pass, static_cast<std::uint16_t>(camera), count);
     }
@@ -182,14 +198,17 @@ void Loop::trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t firs
                       std::size_t count) {
   // In steps that keep every thread busy for a while, so that progress moves within a slab.
   const std::size_t step = std::max<std::size_t>(64, 32 * core::thread_count()) * kGrain;
-  Recorder& recorder = *slabs_[current_];
+  Slab& slab = *slabs_[current_];
   for (std::size_t begin = 0; begin < count; begin += step) {
     const std::size_t size = std::min(step, count - begin);
     core::parallel_for(size, kGrain, [&](std::size_t from, std::size_t to) {
       std::uint64_t rays = 0;
       LayerSpace layers(integrator_.layers().size());
+      Trail trail(settings_.integrator.vertices);
+      Trail* const wanted =
+          writer_ != nullptr && settings_.integrator.vertices > 0 ? &trail : nullptr;
       for (std::size_t i = begin + from; i < begin + to; ++i) {
-        trace_path(pass, camera, first + i, recorder, i, layers, rays);
+        trace_path(pass, camera, first + i, slab, i, layers, wanted, rays);
       }
       rays_ += rays;
     });
@@ -205,8 +224,8 @@ void Loop::trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t firs
   }
 }
 
-void Loop::trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path,
-                      Recorder& recorder, std::size_t slot, LayerSpace& layers,
+void Loop::trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path, Slab& slab,
+                      std::size_t slot, LayerSpace& layers, Trail* trail,
                       std::uint64_t& rays) const {
   const View& view = views_[camera];
   const bool global = settings_.sampler.enumeration == Enumeration::global;
@@ -228,21 +247,47 @@ void Loop::trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path
   const Vec2 lens = view.rays.has_lens() ? sampler.next_2d() : Vec2(0, 0);
   const bool shade = shade_rate_.shaded(x, y, pass);
   const LayerSums& sums = layers.cleared();
-  PathRecord record = tracer_->trace(view.rays.ray(position, lens), sampler, shade, rays, sums);
+  if (trail != nullptr) trail->clear();
+  PathRecord record =
+      tracer_->trace(view.rays.ray(position, lens), sampler, shade, rays, {sums, trail});
   // Without a vertex it is not shaded either way; the flag says that it counts.
   if (!record.has_vertex && settings_.shade_rate > 1) record.shaded = shade;
-  recorder.set(slot, camera, y * view.width + x, in_world(record, space_), sums);
+  slab.records.set(slot, camera, y * view.width + x, in_world(record, space_), sums);
+  if (trail == nullptr) return;
+  add_vertices(trail->vertices(), static_cast<std::uint32_t>(in_pass), space_,
+               slab.vertices[slot / kGrain]);
+}
+
+// The photons of a pass come before its paths, which may need most of the memory.
+void Loop::write_photons(std::uint64_t pass) {
+  std::uint64_t rays = 0;
+  const std::vector<PhotonRow> rows =
+      trace_photon_rows(*integrator_.light_transport(), space_, settings_.sampler, pass,
+                        settings_.integrator.photons, rays);
+  rays_ += rays;
+  wait_for_output();
+  const std::size_t table = settings_.integrator.vertices > 0 ? 2 : 1;
+  append_rows<PhotonRow>(*writer_, table, rows, photon_columns());
+}
+
+void Loop::write_vertices(Slab& slab) {
+  if (settings_.integrator.vertices == 0) return;
+  for (std::vector<VertexRow>& rows : slab.vertices) {
+    append_rows<VertexRow>(*writer_, 1, rows, vertex_columns());
+    rows.clear();
+  }
 }
 
 void Loop::emit(std::uint64_t pass, std::uint16_t camera, std::size_t count) {
   wait_for_output();
-  Recorder& recorder = *slabs_[current_];
+  Slab& slab = *slabs_[current_];
   current_ ^= 1;
   const bool ends_pass = paths_done_ == (pass + 1) * paths_a_pass_;
-  auto work = [this, &recorder, camera, count, ends_pass, done = done_now()]() mutable {
-    result_.non_finite += recorder.add_to(result_.films[camera], count, settings_.shade_rate);
+  auto work = [this, &slab, camera, count, ends_pass, done = done_now()]() mutable {
+    result_.non_finite += slab.records.add_to(result_.films[camera], count, settings_.shade_rate);
     if (writer_ == nullptr) return;
-    writer_->append(count, recorder.columns(channels_));
+    writer_->append(count, slab.records.columns(channels_));
+    write_vertices(slab);
     if (!ends_pass) return;
     done.non_finite = result_.non_finite;
     const std::string state = resume_state(done, settings_);

@@ -8,8 +8,10 @@
 #include "formats/layout/layout.h"
 #include "formats/layout/metadata.h"
 #include "render/camera/camera.h"
+#include "render/loop/photon_table.h"
 #include "render/loop/recorder.h"
 #include "render/loop/render.h"
+#include "render/loop/vertex_table.h"
 
 namespace psf::render {
 
@@ -81,6 +83,12 @@ formats::Head make_head(const Scene& scene, const Integrator& integrator,
 
   formats::Head head;
   head.channels = record_channels(settings.channels, integrator.layers());
+  if (settings.integrator.vertices > 0) {
+    head.tables.push_back(table_of("vertices", vertex_columns()));
+  }
+  if (settings.integrator.photons > 0) {
+    head.tables.push_back(table_of("photons", photon_columns()));
+  }
   head.metadata = formats::to_json(metadata);
   // Names are a help and no reason to refuse a scene of very many materials.
   while (head.metadata.size() > formats::kMaxMetadata && !metadata.materials.empty()) {
