@@ -156,6 +156,11 @@ TEST_CASE("where a base of the index is lost, every chunk of a table is found by
   const Bytes whole = test::load(path);
   const auto commits = test::frames(whole, "CMIT"), chunks = test::frames(whole, "TCHK");
   Bytes bytes = whole;
+  // One that has another number of chunks than the next builds on is no base either.
+  test::put(bytes, commits[3].offset + 64 + 176, 8, 5);
+  test::mend(bytes, commits[3].offset);
+  test::save(path, bytes);
+  CHECK(test::table_faults(path, 8) == "");
   bytes[commits[3].offset] = std::byte{0};
   test::save(path, bytes);
   CHECK(test::table_faults(path, 8) == "");

@@ -210,3 +210,42 @@ TEST_CASE("of a file that a program of version 1.0 copied, all tables are empty,
   CHECK((first == 0 && count == 1));
   CHECK((test::c_read_from(file.get(), 0, 0, 0, 1) == value));
 }
+
+TEST_CASE("indices that do not fit into a directory take a later base, or are refused",
+          "[.][long]") {
+  const test::Scratch scratch;
+  const std::string path = scratch.path("l.pvb");  // two gigabytes, and not for long
+  const pvb_channel channel = {"x", PVB_U32, 1, PVB_PLAIN};
+  const pvb_table table = {"t", &channel, 1, 1};
+  const pvb_options options = {0, 1, nullptr};
+  constexpr std::uint32_t kMost = ((16u << 20) - 160 - 8 - 32) / 32;  // chunks of a directory
+  const auto append = [](pvb_file* file, std::uint32_t first, std::uint32_t count) {
+    std::vector<std::uint32_t> values(count);
+    for (std::uint32_t k = 0; k < count; ++k) values[k] = first + k;
+    const pvb_array array = {values.data(), 4};
+    pvb_append(file, 1, &array);
+    pvb_append_to(file, 0, count, &array);
+    return pvb_commit(file, nullptr, 0);
+  };
+  {
+    const CFile file(pvb_create_with(path.c_str(), &channel, 1, &table, 1, "{}", &options));
+    CHECK(append(file.get(), 0, kMost + 1) == PVB_LIMIT);
+    CHECK(file.error().find("more chunks in this pass than a commit can name") !=
+          std::string::npos);
+  }
+  {
+    const CFile file(pvb_create_with(path.c_str(), &channel, 1, &table, 1, "{}", &options));
+    CHECK(append(file.get(), 0, kMost) == 0);
+    CHECK(append(file.get(), kMost, 10) == 0);
+    REQUIRE(pvb_close(file.get()) == 0);
+  }
+  const CFile file(pvb_open(path.c_str()));
+  REQUIRE(file.error() == "");
+  REQUIRE(file.info().tables[0].records == kMost + 10);
+  std::size_t wrong = 0;
+  for (const std::uint32_t k : {0u, 1u, kMost / 2, kMost - 1, kMost, kMost + 9}) {
+    std::uint32_t value = ~k;
+    wrong += pvb_read_from(file.get(), 0, 0, k, 1, &value, 4) != 0 || value != k;
+  }
+  CHECK(wrong == 0);
+}
