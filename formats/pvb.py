@@ -35,6 +35,7 @@ import concurrent.futures
 import contextlib
 import errno
 import fcntl
+import functools
 import json
 import os
 import stat
@@ -557,8 +558,12 @@ class Table:
         self.path, self._file, self._uuid, self._declared = file.path, file, uuid, declared
         self.name, self.records, self.passes, self.chunks = declared.name, records, passes, chunks
         self._columns = {}  # the last column of each channel of which a part was read
-        starts = np.searchsorted(chunks["pass"], np.arange(passes + 1))
-        self._pass_bounds = np.append(chunks["first"], np.uint64(records))[starts]
+
+    @functools.cached_property
+    def _pass_bounds(self):
+        """(passes + 1,): the first record of each pass, and the number of records."""
+        starts = np.searchsorted(self.chunks["pass"], np.arange(self.passes + 1))
+        return np.append(self.chunks["first"], np.uint64(self.records))[starts]
 
     def _fail(self, why):
         raise Error(f"{self.path}: {self._declared.label}{why}")
