@@ -349,9 +349,10 @@ enum {
   PVBI_COLUMN = 24,
   PVBI_COMMIT = 160,
   PVBI_ENTRY = 32,
-  PVBI_TABLES = 8,  // what precedes the tables in HEAD and in CMIT
-  PVBI_TABLE = 64,  // a table in HEAD, without its channels
-  PVBI_TOTAL = 32,  // a table in CMIT
+  PVBI_HAS_TABLES = 2,  // optional feature of HEAD: tables
+  PVBI_TABLES = 8,      // what precedes the tables in HEAD and in CMIT
+  PVBI_TABLE = 64,      // a table in HEAD, without its channels
+  PVBI_TOTAL = 32,      // a table in CMIT
   PVBI_SLOT_RECORD = 32,
   PVBI_STEP = 64,  // which commits carry more of the index: README.md, "The index"
   PVBI_LEAP = 4096,
@@ -1020,7 +1021,6 @@ static int pvbi_decode_tables(pvb_file* f, const unsigned char* d, size_t size) 
   const uint32_t tables = size < PVBI_TABLES ? 0 : pvbi_get32(d);
   size_t place = PVBI_TABLES;
   uint32_t t;
-  if (size == 0) return 0;
   for (t = 0; t < tables; ++t) {
     char name[PVBI_NAME + 1];
     pvbi_table* table;
@@ -1035,7 +1035,7 @@ static int pvbi_decode_tables(pvb_file* f, const unsigned char* d, size_t size) 
     if (pvbi_decode_channels(f, table, d + place, count) != 0) return f->code;
     place += PVBI_CHANNEL * count;
   }
-  if (size < PVBI_TABLES || t < tables) {
+  if (tables == 0 || t < tables) {
     return pvbi_fail(f, PVB_BAD_INPUT, "HEAD: impossible number of tables or of their channels");
   }
   return 0;
@@ -1061,7 +1061,9 @@ static int pvbi_decode_head(pvb_file* f, const unsigned char* d, size_t size) {
     return f->code;
   }
   place = PVBI_HEAD + PVBI_CHANNEL * count;
-  if (pvbi_set_metadata(f, d + place, text) != 0 || (d[2] | d[3]) == 0) return f->code;
+  if (pvbi_set_metadata(f, d + place, text) != 0 || (pvbi_get32(d + 8) & PVBI_HAS_TABLES) == 0) {
+    return f->code;
+  }
   place += text;
   return pvbi_decode_tables(f, d + place, size - place);
 }
@@ -1519,8 +1521,11 @@ static int pvbi_write_start(pvb_file* f) {
   f->head = PVBI_CAST(unsigned char*, calloc(1, length));
   if (f->head == PVBI_NULL) return pvbi_fail_memory(f);
   d = f->head + PVBI_PREFIX;
-  d[0] = 1;              // version 1.0, or
-  d[2] = f->tables > 1;  // 1.1 with tables
+  d[0] = 1;  // version 1.0, or
+  if (f->tables > 1) {
+    d[2] = 1;  // 1.1 with tables
+    pvbi_put32(d + 8, PVBI_HAS_TABLES);
+  }
   pvbi_put32(d + 12, paths->capacity);
   pvbi_put32(d + 16, paths->channel_count & 0xFFFFFFFFu);
   pvbi_put32(d + 20, f->info.metadata_size & 0xFFFFFFFFu);
@@ -1665,7 +1670,7 @@ static int pvbi_check_rest(pvb_file* f, const char* metadata) {
                      "cannot be resumed: its metadata is not the same; write "
                      "another file");
   }
-  if ((d[2] | d[3] << 8) > 1 || pvbi_get32(d + 8) != 0) {
+  if ((d[2] | d[3] << 8) > 1 || (pvbi_get32(d + 8) | PVBI_HAS_TABLES) != PVBI_HAS_TABLES) {
     return pvbi_fail(f, PVB_BAD_INPUT,
                      "cannot be resumed: written by a later version of the "
                      "format; use a newer pvb.h");

@@ -60,6 +60,7 @@ PAGE, ALIGNMENT = 4096, 64  # of frames; of columns and sections in a frame
 MAX_DIRECTORY, MAX_METADATA, MAX_RESUME = 16 << 20, 1 << 20, 64 << 10
 MAX_CHUNK_RECORDS, MAX_CHUNK_BYTES = 1 << 24, 1 << 30
 MAX_TABLES, MAX_CHANNELS = 16, 256
+HAS_TABLES = 2  # an optional feature of HEAD
 INDEX_STEP, INDEX_LEAP = 64, 4096  # which entries a commit repeats: README.md, "The index"
 REQUIRED, CLOSED = 1, 1  # flags of a frame, of a commit
 RAW, ZSTD = 0, 1
@@ -413,16 +414,15 @@ class _Head:
             raise Error(f"HEAD: {count} channels, {length} bytes of metadata are not possible")
         self.tables = [_decode_table(directory, HEAD.size, 0, PATHS, capacity, count)]
         self.metadata = directory[start:start + length]
-        # A later minor version than 0 that says nothing of tables has none.
-        if self.minor > 0 and len(directory) > start + length:
+        if self.optional & HAS_TABLES:
             self._decode_tables(directory, start + length)
 
     def _decode_tables(self, directory, place):
         try:
             count, = TABLES.unpack_from(directory, place)
             place += TABLES.size
-            if count > MAX_TABLES:
-                raise Error(f"HEAD: {count} tables; at most {MAX_TABLES} are possible")
+            if not 1 <= count <= MAX_TABLES:
+                raise Error(f"HEAD: {count} tables; 1 to {MAX_TABLES} are possible")
             for number in range(1, count + 1):
                 name, capacity, channels = TABLE.unpack_from(directory, place)
                 place += TABLE.size
@@ -1204,7 +1204,7 @@ class Writer:
                                  for table, start in zip(self._tables[1:], first[1:]))
 
     def _tables_directory(self, first):
-        """What a commit's directory has of the tables, whose indices start at the chunks `first`."""
+        """What a commit's directory has of the tables; `first`: where their indices start."""
         if len(self._tables) == 1:
             return b""
         out = bytearray(TABLES.pack(len(self._tables) - 1))
@@ -1343,8 +1343,8 @@ def _encode_channels(channels):
 
 def _encode_head(tables, metadata):
     paths = tables[0]
-    out = HEAD.pack(1, 1 if len(tables) > 1 else 0, 0, 0, paths.capacity, len(paths.channels),
-                    len(metadata))
+    minor, optional = (1, HAS_TABLES) if len(tables) > 1 else (0, 0)
+    out = HEAD.pack(1, minor, 0, optional, paths.capacity, len(paths.channels), len(metadata))
     out += _encode_channels(paths.channels) + metadata
     if len(tables) > 1:
         out += TABLES.pack(len(tables) - 1)
@@ -1436,7 +1436,7 @@ def resume(path, channels, metadata=None, codec="raw", sync=True, tables=None):
         raise Error(f"{path}: cannot resume: there is no such file; create it")
     try:
         with Reader(path) as reader:
-            if reader.version > (1, 1) or reader._head.optional:
+            if reader.version > (1, 1) or reader._head.optional & ~HAS_TABLES:
                 raise Error(f"{path}: cannot resume: written by version {reader._head.major}."
                             f"{reader._head.minor} of the format; use a newer module")
             for what, own, wanted in (("channels", reader._head.tables[:1], declared[:1]),

@@ -97,10 +97,10 @@ class Table:
             print(name, kind, components, ("plain", "octahedral")[encoding], values)
 
 
-def tables_of(directory, minor, count, metadata):
+def tables_of(directory, optional, count, metadata):
     """[The paths, then the tables] that HEAD declares."""
     tables, place = [Table("paths", channels_at(directory, 64, count))], 64 + 64 * count + metadata
-    if minor == 0 or place == len(directory):
+    if not optional & 2:
         return tables
     number, place = struct.unpack_from("<I", directory, place)[0], place + 8
     for _ in range(number):
@@ -137,10 +137,10 @@ def read(path):
         data = file.read()
     kind, directory, length = frame(data, 0) or sys.exit("no HEAD")
     uuid = data[8:24]
-    major, minor, required, _, _, count, metadata = struct.unpack_from("<HHIIIII", directory, 0)
+    major, _, required, optional, _, count, metadata = struct.unpack_from("<HHIIIII", directory, 0)
     if kind != b"HEAD" or major != 1 or required:
         sys.exit("not version 1")
-    tables = tables_of(directory, minor, count, metadata)
+    tables = tables_of(directory, optional, count, metadata)
 
     # Hop from frame to frame; chunks count once a commit follows them.
     passes, firsts = 0, {0: [0] * len(tables)}

@@ -193,7 +193,7 @@ TEST_CASE("impossible tables in HEAD and impossible totals are an error, whateve
     test::save(path, bytes);
     return CFile(pvb_open(path.c_str())).error();
   };
-  for (const std::uint64_t value : {3u, 16u, 17u, 0xFFFFFFFFu}) {
+  for (const std::uint64_t value : {0u, 3u, 16u, 17u, 0xFFFFFFFFu}) {
     CHECK_FALSE(error(0, tables, 4, value).empty());
   }
   CHECK(error(0, tables, 4, 1).find("cannot be read") == std::string::npos);

@@ -32,7 +32,8 @@ TEST_CASE("tables come back by value and pass, of every type, and passes may hav
     CHECK(test::table_faults(path, passes) == "");
   }
   const CFile file(pvb_open(path.c_str()));
-  CHECK(test::get(test::load(path), 66, 2) == 1);
+  CHECK(test::get(test::load(path), 66, 2) == 1);  // minor version, optional features
+  CHECK(test::get(test::load(path), 72, 4) == 2);
   const auto expected = test::table_channels();
   for (std::size_t t = 0; t < expected.size(); ++t) {
     const pvb_table_info& table = file.info().tables[t];
@@ -65,6 +66,39 @@ TEST_CASE("without tables a file is the same to the last byte, whichever way it 
   for (std::size_t pass = 0; pass < 2; ++pass) test::write_golden_pass(file.get(), pass);
   CHECK(pvb_close(file.get()) == 0);
   CHECK((test::load(path) == test::load(PSF_SOURCE_DIR "/sample_data/golden-raw.pvb")));
+}
+
+TEST_CASE("tables are told by the optional feature, whatever the minor version") {
+  const test::Scratch scratch;
+  const std::string path = scratch.path("v.pvb");
+  test::write_tables(path, 3);
+  const auto changed = [&](std::uint64_t minor, std::uint64_t features) {
+    Bytes bytes = test::load(path);
+    test::put(bytes, 66, 2, minor);
+    test::put(bytes, 72, 4, features);
+    test::mend(bytes, 0);
+    test::save(path, bytes);
+  };
+  for (const std::uint64_t minor : {0u, 1u, 7u}) {
+    changed(minor, 0x80000003u);
+    CHECK(test::table_faults(path, 3) == "");
+    changed(minor, 0x80000001u);
+    const CFile file(pvb_open(path.c_str()));
+    CHECK(file.error().empty());
+    CHECK(file.info().table_count == 0);
+    CHECK((test::c_read(file.get(), 0, 0, 72) == test::golden_values(0, 0, 72)));
+  }
+  for (const std::uint64_t features : {std::uint64_t{3}, std::uint64_t{0x80000002u}}) {
+    changed(1, features);
+    CHECK(CFile(test::resume_tables(path)).error().find("newer pvb.h") != std::string::npos);
+  }
+  changed(2, 2);
+  CHECK(CFile(test::resume_tables(path)).error().find("newer pvb.h") != std::string::npos);
+  changed(1, 2);
+  CHECK(CFile(test::resume_tables(path)).error().empty());
+  const CFile later(pvb_open(PSF_SOURCE_DIR "/sample_data/golden-minor.pvb"));
+  CHECK(later.error().empty());
+  CHECK(later.info().table_count == 0);
 }
 
 TEST_CASE("records of tables and of paths in any order and any portions give the same values") {
