@@ -15,6 +15,18 @@
                  reflectance=r)
         w.commit()                                      # ends a pass; what is committed is safe
 
+Tables, other records under the same passes (version 1.1 of the format):
+
+    vertices = pvb.standard_table("vertices", "normal")
+    with pvb.create("new.pvb", channels, tables={"vertices": vertices}) as w:
+        w.append(...)
+        w.append_to("vertices", path=k, parent=m, position=x, throughput=t, emission=e, direct=d,
+                    background=b, normal=n)
+        w.commit()
+    with pvb.open("new.pvb") as f:
+        table = f.tables["vertices"]                    # is to its records what f is to the paths
+        last = table.read("position", *table.pass_range(f.passes - 1))
+
 Needs Python 3.9, numpy and a POSIX system; zstd columns need the module zstandard too. Arrays have
 the stored type, (records, components) or (records,); octahedral channels are float32 unit vectors
 (records, 3). Whatever goes wrong is a pvb.Error whose text names the file and the place.
@@ -23,6 +35,7 @@ import concurrent.futures
 import contextlib
 import errno
 import fcntl
+import functools
 import json
 import os
 import stat
@@ -39,13 +52,15 @@ try:
 except ImportError:
     zstandard = None
 
-__all__ = ["Channel", "Error", "Reader", "Writer", "create", "decode_octahedral",
-           "encode_octahedral", "open", "resume", "standard_channels"]
+__all__ = ["Channel", "Error", "Reader", "Table", "Writer", "create", "decode_octahedral",
+           "encode_octahedral", "open", "resume", "standard_channels", "standard_table"]
 
 MAGIC = b"\x89PVB\r\n\x1a\x01"
 PAGE, ALIGNMENT = 4096, 64  # of frames; of columns and sections in a frame
 MAX_DIRECTORY, MAX_METADATA, MAX_RESUME = 16 << 20, 1 << 20, 64 << 10
 MAX_CHUNK_RECORDS, MAX_CHUNK_BYTES = 1 << 24, 1 << 30
+MAX_TABLES, MAX_CHANNELS = 16, 256
+HAS_TABLES = 2  # an optional feature of HEAD
 INDEX_STEP, INDEX_LEAP = 64, 4096  # which entries a commit repeats: README.md, "The index"
 REQUIRED, CLOSED = 1, 1  # flags of a frame, of a commit
 RAW, ZSTD = 0, 1
@@ -54,7 +69,10 @@ PREFIX = struct.Struct("<8s16s4sIQQQII")
 HEAD = struct.Struct("<HHIIIII40x")
 CHANNEL = struct.Struct("<56sBBB5x")
 SLOT = struct.Struct("<QQQII")
-CHUNK = struct.Struct("<QIII12x")
+TABLES = struct.Struct("<I4x")  # before the tables in HEAD and in CMIT
+TABLE = struct.Struct("<56sII")  # of HEAD
+TOTAL = struct.Struct("<QQQ8x")  # of CMIT
+CHUNK = struct.Struct("<QIIII8x")
 COLUMN = struct.Struct("<HBBIQQ")
 COMMIT = struct.Struct("<I4xQQQQQQQQ")
 SECTION = struct.Struct("<QQI4x")
@@ -65,6 +83,9 @@ TYPES = {"u8": (1, "<u1"), "u16": (2, "<u2"), "u32": (3, "<u4"), "u64": (4, "<u8
          "f16": (5, "<f2"), "f32": (6, "<f4"), "f64": (7, "<f8")}
 TYPE_NAMES = {code: name for name, (code, _) in TYPES.items()}
 ENCODINGS = ("plain", "octahedral")
+
+
+PATHS = "paths"  # the name of the records that are no table's
 
 
 class Error(Exception):
@@ -87,9 +108,7 @@ class Channel(NamedTuple):
 
     def check(self):
         name = self.name
-        if not 1 <= len(name) <= 56 or any(not "!" <= letter <= "~" for letter in name):
-            raise Error("a channel's name must be 1 to 56 printable ASCII characters without "
-                        "spaces")
+        _check_name("channel", name)
         if self.type not in TYPES:
             raise Error(f"channel {name}: unknown type {self.type}")
         if not 1 <= self.components <= 16:
@@ -98,6 +117,11 @@ class Channel(NamedTuple):
             raise Error(f"channel {name}: unknown encoding {self.encoding}")
         if self.encoding == "octahedral" and (self.type, self.components) != ("u16", 2):
             raise Error(f"channel {name}: an octahedral channel is u16 x 2")
+
+
+def _check_name(what, name):
+    if not 1 <= len(name) <= 56 or any(not "!" <= letter <= "~" for letter in name):
+        raise Error(f"a {what}'s name must be 1 to 56 printable ASCII characters without spaces")
 
 
 REQUIRED_CHANNELS = (Channel("position", "f32", 3), Channel("throughput", "f32", 3),
@@ -110,14 +134,39 @@ OPTIONAL_CHANNELS = (Channel("unfiltered", "f32", 3), Channel("flags", "u8"),
                      Channel("material", "u32"), Channel("roughness", "f32"))
 
 
+STANDARD = {  # the required channels of a table, and the others
+    PATHS: (REQUIRED_CHANNELS, OPTIONAL_CHANNELS),
+    "vertices": (
+        (Channel("path", "u32"), Channel("parent", "u32"), Channel("position", "f32", 3),
+         Channel("throughput", "f32", 3), Channel("emission", "f32", 3),
+         Channel("direct", "f32", 3), Channel("background", "f32", 3)),
+        (Channel("distance", "f32"), Channel("depth", "u16"), Channel("kind", "u8"),
+         Channel("flags", "u8"), Channel("normal", "f32", 3), Channel("reflectance", "f32", 3),
+         Channel("direction", "f32", 3), Channel("outgoing", "f32", 3), Channel("pdf", "f32"),
+         Channel("lobe", "u8"), Channel("material", "u32"), Channel("roughness", "f32"),
+         Channel("visibility", "u32"))),
+    "photons": (
+        (Channel("path", "u32"), Channel("position", "f32", 3), Channel("normal", "f32", 3),
+         Channel("direction", "f32", 3), Channel("power", "f32", 3)),
+        (Channel("depth", "u16"), Channel("light", "u32"), Channel("material", "u32")))}
+
+
 def standard_channels(*optional, octahedral=(), half=()):
     """The five required channels and the optional ones named, with the types of the specification.
     `octahedral` (vectors of unit length) and `half` (any f32) name those to store smaller."""
-    known = {channel.name: channel for channel in REQUIRED_CHANNELS + OPTIONAL_CHANNELS}
+    return standard_table(PATHS, *optional, octahedral=octahedral, half=half)
+
+
+def standard_table(table, *optional, octahedral=(), half=()):
+    """The same of a table that the specification describes: vertices or photons."""
+    if table not in STANDARD:
+        raise Error(f"there is no standard table {table}; there are {', '.join(STANDARD)}")
+    required, others = STANDARD[table]
+    known = {channel.name: channel for channel in required + others}
     for name in (*optional, *octahedral, *half):
         if name not in known:
             raise Error(f"there is no standard channel {name}; there are {', '.join(known)}")
-    wanted = {channel.name for channel in REQUIRED_CHANNELS} | set(optional)
+    wanted = {channel.name for channel in required} | set(optional)
     for name in octahedral:
         known[name] = Channel(name, "u16", 2, "octahedral")
     for name in half:
@@ -246,20 +295,38 @@ class _Frame(NamedTuple):
         return self.offset + self.length
 
 
+class _Declared(NamedTuple):
+    """A table as HEAD has it; number 0 is the paths."""
+    number: int
+    name: str
+    capacity: int
+    channels: dict  # name -> Channel
+
+    @property
+    def label(self):  # before texts on its channels and chunks
+        return f"table {self.name}: " if self.number else ""
+
+
+class _Total(NamedTuple):
+    """What a commit says of a table."""
+    records: int
+    chunks: int
+    first_chunk: int
+
+
 class _Commit(NamedTuple):
     frame: _Frame
     flags: int
     number: int
-    records: int
-    chunks: int
     passes: int
     previous: int
     base: int
-    first_chunk: int
     foreign_required: int
+    totals: list  # of the paths, then of each table
     index: tuple  # offset, length, checksum, like the next two
     head: tuple
     resume: tuple
+    table_indices: list  # arrays of ENTRY
 
 
 class _File:
@@ -269,8 +336,16 @@ class _File:
         self.path, self.descriptor = path, descriptor
         status = os.fstat(descriptor)
         if not stat.S_ISREG(status.st_mode):
+            self.close()
             raise Error(f"{path}: not a regular file; give the name of a .pvb file")
         self.size = status.st_size
+
+    def close(self):
+        if self.descriptor >= 0:
+            os.close(self.descriptor)
+            self.descriptor = -1
+
+    __del__ = close
 
     def read_into(self, offset, out):
         view = memoryview(out)
@@ -320,7 +395,7 @@ class _File:
 
 
 class _Head:
-    """Version, capacity, channels and metadata of a HEAD's directory."""
+    """Version, channels, metadata and tables of a HEAD's directory."""
 
     def __init__(self, directory):
         if len(directory) < 4:
@@ -330,30 +405,64 @@ class _Head:
             self.refuse("whose layout is another")
         if len(directory) < HEAD.size:
             raise Error("HEAD is too short")
-        _, _, required, _, self.capacity, count, length = HEAD.unpack_from(directory)
+        _, _, required, self.optional, capacity, count, length = HEAD.unpack_from(directory)
         if required:
             self.refuse(f"with features that must be understood to read it (bits {required:#x})")
         start = HEAD.size + CHANNEL.size * count
-        if not 1 <= count <= 256 or length > MAX_METADATA or len(directory) < start + length:
+        if not 1 <= count <= MAX_CHANNELS or length > MAX_METADATA or (
+                len(directory) < start + length):
             raise Error(f"HEAD: {count} channels, {length} bytes of metadata are not possible")
-        self.channels = {}
-        for k in range(count):
-            entry = CHANNEL.unpack_from(directory, HEAD.size + CHANNEL.size * k)
-            name, _, padding = entry[0].partition(b"\0")
-            if padding.strip(b"\0"):
-                raise Error("HEAD: a channel's name is not padded with zeros")
-            channel = Channel(name.decode("latin-1"), TYPE_NAMES.get(entry[1], entry[1]), entry[2],
-                              ENCODINGS[entry[3]] if entry[3] < 2 else entry[3])
-            channel.check()
-            self.channels[channel.name] = channel
-        if len(self.channels) != count:
-            raise Error("HEAD: two channels have one name")
-        check_capacity(self.capacity, self.channels.values())
+        self.tables = [_decode_table(directory, HEAD.size, 0, PATHS, capacity, count)]
         self.metadata = directory[start:start + length]
+        if self.optional & HAS_TABLES:
+            self._decode_tables(directory, start + length)
+
+    def _decode_tables(self, directory, place):
+        try:
+            count, = TABLES.unpack_from(directory, place)
+            place += TABLES.size
+            if not 1 <= count <= MAX_TABLES:
+                raise Error(f"HEAD: {count} tables; 1 to {MAX_TABLES} are possible")
+            for number in range(1, count + 1):
+                name, capacity, channels = TABLE.unpack_from(directory, place)
+                place += TABLE.size
+                if not 1 <= channels <= MAX_CHANNELS:
+                    raise Error(f"HEAD: {channels} channels of a table are not possible")
+                table = _decode_table(directory, place, number, _decode_name(name), capacity,
+                                      channels)
+                _check_name("table", table.name)
+                if table.name in [other.name for other in self.tables]:
+                    raise Error(f"HEAD: two tables have the name {table.name}")
+                self.tables.append(table)
+                place += CHANNEL.size * channels
+        except struct.error:
+            raise Error("HEAD is too short for its tables") from None
 
     def refuse(self, why):
         raise Error(f"written by version {self.major}.{self.minor} of the format, {why}; this "
                     "module reads version 1: use a newer one")
+
+
+def _decode_name(name):
+    name, _, padding = name.partition(b"\0")
+    if padding.strip(b"\0"):
+        raise Error("HEAD: a name is not padded with zeros")
+    return name.decode("latin-1")
+
+
+def _decode_table(directory, place, number, name, capacity, count):
+    """A _Declared whose `count` channels stand at `place`."""
+    channels = {}
+    for k in range(count):
+        entry = CHANNEL.unpack_from(directory, place + CHANNEL.size * k)
+        channel = Channel(_decode_name(entry[0]), TYPE_NAMES.get(entry[1], entry[1]), entry[2],
+                          ENCODINGS[entry[3]] if entry[3] < 2 else entry[3])
+        channel.check()
+        channels[channel.name] = channel
+    if len(channels) != count:
+        raise Error("HEAD: two channels have one name")
+    check_capacity(capacity, channels.values())
+    return _Declared(number, name, capacity, channels)
 
 
 def check_capacity(capacity, channels):
@@ -363,128 +472,110 @@ def check_capacity(capacity, channels):
                     f"{MAX_CHUNK_RECORDS} records and at most {MAX_CHUNK_BYTES >> 20} MiB")
 
 
-def _decode_commit(frame):
-    """Nothing where the frame is no commit whose numbers are possible."""
+def _decode_totals(directory, tables):
+    """[_Total] of the tables and [their indices], from the directory of a commit; nothing where
+    they are not possible."""
+    if len(directory) == COMMIT_SIZE:  # a program of version 1.0 has copied the paths alone
+        return [_Total(0, 0, 0)] * tables, [np.empty(0, ENTRY)] * tables
+    first = COMMIT_SIZE + TABLES.size
+    place = first + TOTAL.size * tables
+    if len(directory) < place or TABLES.unpack_from(directory, COMMIT_SIZE)[0] != tables:
+        return None
+    totals, indices = [], []
+    for t in range(tables):
+        totals.append(_Total(*TOTAL.unpack_from(directory, first + TOTAL.size * t)))
+        count = totals[t].chunks - totals[t].first_chunk
+        if not 0 <= count <= (len(directory) - place) // ENTRY.itemsize:
+            return None
+        indices.append(np.frombuffer(directory, ENTRY, count, place))
+        place += indices[t].nbytes
+    return totals, indices
+
+
+def _decode_commit(frame, tables):
+    """Nothing where the frame is no commit whose numbers are possible, of a file of so many
+    tables."""
     if not isinstance(frame, _Frame) or frame.kind != b"CMIT" or len(frame.directory) < COMMIT_SIZE:
         return None
+    flags, number, records, chunks, passes, previous, base, first_chunk, foreign = (
+        COMMIT.unpack_from(frame.directory))
     sections = [SECTION.unpack_from(frame.directory, COMMIT.size + SECTION.size * k)
                 for k in range(3)]
-    commit = _Commit(frame, *COMMIT.unpack_from(frame.directory), *sections)
     most = (frame.length, 64 + MAX_DIRECTORY, MAX_RESUME)
     for (offset, length, _), limit in zip(sections, most):
         if (length > limit or offset < len(frame.front) or offset % ALIGNMENT
                 or offset + length > frame.length):
             return None
-    if (commit.index[1] != ENTRY.itemsize * (commit.chunks - commit.first_chunk)
-            or commit.chunks > frame.offset // PAGE or commit.number == 0
-            or (commit.first_chunk > 0 and commit.base == 0)
-            or max(commit.base, commit.previous) >= frame.offset):
+    if (sections[0][1] != ENTRY.itemsize * (chunks - first_chunk) or number == 0
+            or (first_chunk > 0 and base == 0) or max(base, previous) >= frame.offset):
         return None
-    return commit
+    more = _decode_totals(frame.directory, tables) if tables else ([], [])
+    if more is None:
+        return None
+    totals = [_Total(records, chunks, first_chunk), *more[0]]
+    if (sum(total.chunks for total in totals) > frame.offset // PAGE  # each takes a page at least
+            or (first_chunk == 0 and any(total.first_chunk for total in totals))):
+        return None
+    return _Commit(frame, flags, number, passes, previous, base, foreign, totals, *sections,
+                   more[1])
+
+
+def _decode_chunk(frame, table):
+    """(entry as in the index, [(codec, filter, checksum, place, stored length)]) of a frame that is
+    a chunk of this _Declared."""
+    directory, channels = frame.directory, table.channels
+    if frame.kind != (b"TCHK" if table.number else b"CHNK"):
+        raise Error("another frame stands in its place")
+    if len(directory) < CHUNK.size + COLUMN.size * len(channels):
+        raise Error("its directory is too short")
+    first, count, number, columns, owner = CHUNK.unpack_from(directory)
+    if table.number and owner != table.number:
+        raise Error("a chunk of another table stands in its place")
+    if not 1 <= count <= table.capacity or columns != len(channels):
+        raise Error(f"{count} records in {columns} columns are not possible")
+    out, behind = [], len(frame.front)
+    for k, channel in enumerate(channels.values()):
+        own, codec, filtered, crc, place, stored = COLUMN.unpack_from(
+            directory, CHUNK.size + COLUMN.size * k)
+        if (codec, filtered) not in ((RAW, 0), (ZSTD, 0), (ZSTD, 1)):
+            raise Error(f"channel {channel.name}: unknown codec {codec} with filter {filtered}")
+        decoded = count * channel.stride
+        if (own != k or place < behind or place % ALIGNMENT or place + stored > frame.length
+                or not (stored == decoded if codec == RAW else stored < decoded)):
+            raise Error(f"channel {channel.name}: impossible place or length")
+        out.append((codec, filtered, crc, place, stored))
+        behind = place + stored
+    return (frame.offset, frame.length, first, count, number), out
 
 
 # --- reading -------------------------------------------------------------------------------------
 
-class Reader:
-    """A path-vertex buffer up to the last commit that it had when it was opened."""
+class Table:
+    """The records of a table up to the last commit that its file had when it was opened. What is
+    said of "records" in a Reader is said of the paths; a Reader is their table."""
 
-    def __init__(self, path):
-        self.path = os.fspath(path)
-        with _system(self.path, "open"):
-            # Without O_NONBLOCK, opening a named pipe would wait for a writer.
-            descriptor = os.open(self.path, os.O_RDONLY | os.O_NONBLOCK)
-        try:
-            self._open(_File(self.path, descriptor))
-        except BaseException:
-            os.close(descriptor)
-            raise
-
-    def _open(self, file):
-        self._file = file
+    def __init__(self, file, uuid, declared, passes, records, chunks):
+        self.path, self._file, self._uuid, self._declared = file.path, file, uuid, declared
+        self.name, self.records, self.passes, self.chunks = declared.name, records, passes, chunks
         self._columns = {}  # the last column of each channel of which a part was read
-        frame = file.frame(0)
-        if isinstance(frame, str):
-            start = file.read(0, min(len(MAGIC), file.size))
-            if start != MAGIC:
-                self._fail("is no path-vertex buffer; give the name of a .pvb file")
-            self._fail(f"its header cannot be read: {frame}; restore it from a copy or render "
-                       "again")
-        if frame.kind != b"HEAD" or frame.sequence != 0:
-            self._fail("starts with a frame that is not HEAD; it is no path-vertex buffer")
-        try:
-            self._head = _Head(frame.directory)
-        except Error as error:
-            self._fail(error)
-        self._head_frame = frame
-        self._uuid = frame.uuid
-        self._commit = self._last_commit()
-        if self._commit.foreign_required:
-            self._fail(f"written by version {self._head.major}.{self._head.minor} of the format, "
-                       "with frames that must be understood to read it; use a newer module")
-        self.chunks = self._load_index()
-        self._scanned = self.chunks is None
-        if self._scanned:
-            self.chunks = self._scan_index()
-        starts = np.flatnonzero(np.diff(self.chunks["pass"].astype(np.int64), prepend=-1))
-        self._pass_bounds = np.append(self.chunks["first"][starts], np.uint64(self.records))
+
+    @functools.cached_property
+    def _pass_bounds(self):
+        """(passes + 1,): the first record of each pass, and the number of records."""
+        starts = np.searchsorted(self.chunks["pass"], np.arange(self.passes + 1))
+        return np.append(self.chunks["first"], np.uint64(self.records))[starts]
 
     def _fail(self, why):
-        raise Error(f"{self.path}: {why}")
-
-    # What the file holds.
-
-    @property
-    def records(self):
-        return self._commit.records
-
-    @property
-    def passes(self):
-        return self._commit.passes
+        raise Error(f"{self.path}: {self._declared.label}{why}")
 
     @property
     def channels(self):
         """Name -> Channel, in the order of the file."""
-        return dict(self._head.channels)
-
-    @property
-    def metadata(self):
-        try:
-            metadata = json.loads(self._head.metadata.decode("utf-8"))
-        except (ValueError, RecursionError):
-            metadata = None
-        if not isinstance(metadata, dict):
-            self._fail("the metadata is no JSON object in UTF-8")
-        return metadata
-
-    @property
-    def closed(self):
-        """Whether the producer said that it was done."""
-        return bool(self._commit.flags & CLOSED)
-
-    @property
-    def uncommitted_bytes(self):
-        """Behind the last commit: normal after a kill."""
-        return self._file.size - self._commit.frame.end
-
-    @property
-    def uuid(self):
-        return uuids.UUID(bytes=self._uuid)
-
-    @property
-    def version(self):
-        return self._head.major, self._head.minor
+        return dict(self._declared.channels)
 
     @property
     def chunk_capacity(self):
-        return self._head.capacity
-
-    @property
-    def resume_state(self):
-        """What the producer handed to its last commit."""
-        try:
-            return self._file.section(self._commit.frame, self._commit.resume)
-        except Error as error:
-            self._fail(f"resume state of the commit at byte {self._commit.frame.offset}: {error}")
+        return self._declared.capacity
 
     def pass_range(self, k):
         """(first record, number of records) of pass k, counted from 0."""
@@ -500,7 +591,7 @@ class Reader:
     # Values.
 
     def __contains__(self, name):
-        return name in self._head.channels
+        return name in self._declared.channels
 
     def __getitem__(self, name):
         return self.read(name)
@@ -508,17 +599,17 @@ class Reader:
     def read(self, name, first=0, count=None, codes=False):
         """Records [first, first + count) of a channel, to the end where no count is given, as an
         array of your own. `codes`: the stored u16 x 2 of an octahedral channel."""
-        channel = self._head.channels.get(name)
+        channel = self._declared.channels.get(name)
         if channel is None:
-            self._fail(f"has no channel {name}; it has {', '.join(self._head.channels)}")
+            self._fail(f"has no channel {name}; it has {', '.join(self._declared.channels)}")
         count = self.records - first if count is None else count
         if first < 0 or count < 0 or first + count > self.records:
-            self._fail(f"{count} records from {first} on asked for, but the file has "
-                       f"{self.records}")
+            self._fail(f"{count} records from {first} on asked for, but the "
+                       f"{'table' if self._declared.number else 'file'} has {self.records}")
         decode = channel.encoding == "octahedral" and not codes
         out = np.empty((count, 3) if decode else (count, channel.components),
                        np.dtype("<f4") if decode else channel.dtype)
-        k = list(self._head.channels).index(name)
+        k = list(self._declared.channels).index(name)
 
         def part(chunk):
             start, length = int(self.chunks[chunk]["first"]), int(self.chunks[chunk]["count"])
@@ -544,7 +635,7 @@ class Reader:
     def _column(self, chunk, k):
         found = self._columns.get(k)
         if found is None or found[0] != chunk:
-            channel = list(self._head.channels.values())[k]
+            channel = list(self._declared.channels.values())[k]
             shape = (int(self.chunks[chunk]["count"]), channel.components)
             found = chunk, self._load(chunk, k, np.empty(shape, channel.dtype))
             self._columns[k] = found
@@ -553,7 +644,7 @@ class Reader:
     def _load(self, chunk, k, out):
         """Fills `out` with a whole column whose checksum is right."""
         offset, first, count = (int(self.chunks[chunk][f]) for f in ("offset", "first", "count"))
-        name = list(self._head.channels)[k]
+        name = list(self._declared.channels)[k]
         try:
             columns = self._chunk_columns(chunk)
             codec, filtered, crc, place, stored = columns[k]
@@ -591,34 +682,98 @@ class Reader:
         frame = self._file.frame(int(self.chunks[chunk]["offset"]), self._uuid)
         if isinstance(frame, str):
             raise Error(frame)
-        entry, columns = self._decode_chunk(frame)
+        entry, columns = _decode_chunk(frame, self._declared)
         if entry != self.chunks[chunk].item():
             raise Error("another chunk stands in its place")
         return columns
 
-    def _decode_chunk(self, frame):
-        """(entry as in the index, [(codec, filter, checksum, place, stored length)]) of a frame."""
-        directory, channels = frame.directory, self._head.channels
-        if frame.kind != b"CHNK":
-            raise Error("another frame stands in its place")
-        if len(directory) < CHUNK.size + COLUMN.size * len(channels):
-            raise Error("its directory is too short")
-        first, count, number, columns = CHUNK.unpack_from(directory)
-        if not 1 <= count <= self._head.capacity or columns != len(channels):
-            raise Error(f"{count} records in {columns} columns are not possible")
-        out, behind = [], len(frame.front)
-        for k, channel in enumerate(channels.values()):
-            own, codec, filtered, crc, place, stored = COLUMN.unpack_from(
-                directory, CHUNK.size + COLUMN.size * k)
-            if (codec, filtered) not in ((RAW, 0), (ZSTD, 0), (ZSTD, 1)):
-                raise Error(f"channel {channel.name}: unknown codec {codec} with filter {filtered}")
-            decoded = count * channel.stride
-            if (own != k or place < behind or place % ALIGNMENT or place + stored > frame.length
-                    or not (stored == decoded if codec == RAW else stored < decoded)):
-                raise Error(f"channel {channel.name}: impossible place or length")
-            out.append((codec, filtered, crc, place, stored))
-            behind = place + stored
-        return (frame.offset, frame.length, first, count, number), out
+
+class Reader(Table):
+    """A path-vertex buffer up to the last commit that it had when it was opened. `tables`: name ->
+    Table, in the order of the file."""
+
+    def __init__(self, path):
+        self.path = os.fspath(path)
+        with _system(self.path, "open"):
+            # Without O_NONBLOCK, opening a named pipe would wait for a writer.
+            descriptor = os.open(self.path, os.O_RDONLY | os.O_NONBLOCK)
+        file = _File(self.path, descriptor)
+        try:
+            self._open(file)
+        except BaseException:
+            file.close()
+            raise
+
+    def _open(self, file):
+        self._file = file
+        frame = file.frame(0)
+        if isinstance(frame, str):
+            start = file.read(0, min(len(MAGIC), file.size))
+            if start != MAGIC:
+                self._refuse("is no path-vertex buffer; give the name of a .pvb file")
+            self._refuse(f"its header cannot be read: {frame}; restore it from a copy or render "
+                         "again")
+        if frame.kind != b"HEAD" or frame.sequence != 0:
+            self._refuse("starts with a frame that is not HEAD; it is no path-vertex buffer")
+        try:
+            self._head = _Head(frame.directory)
+        except Error as error:
+            self._refuse(error)
+        self._head_frame = frame
+        self._uuid = frame.uuid
+        self._commit = self._last_commit()
+        if self._commit.foreign_required:
+            self._refuse(f"written by version {self._head.major}.{self._head.minor} of the format, "
+                         "with frames that must be understood to read it; use a newer module")
+        indices = self._load_indices()
+        self._scanned = indices is None
+        if self._scanned:
+            indices = self._scan_indices()
+        whole = [(file, frame.uuid, declared, self._commit.passes, total.records, index)
+                 for declared, total, index in zip(self._head.tables, self._commit.totals, indices)]
+        super().__init__(*whole[0])
+        self.tables = {each[2].name: Table(*each) for each in whole[1:]}
+
+    def _refuse(self, why):
+        raise Error(f"{self.path}: {why}")
+
+    # What the file holds.
+
+    @property
+    def metadata(self):
+        try:
+            metadata = json.loads(self._head.metadata.decode("utf-8"))
+        except (ValueError, RecursionError):
+            metadata = None
+        if not isinstance(metadata, dict):
+            self._refuse("the metadata is no JSON object in UTF-8")
+        return metadata
+
+    @property
+    def closed(self):
+        """Whether the producer said that it was done."""
+        return bool(self._commit.flags & CLOSED)
+
+    @property
+    def uncommitted_bytes(self):
+        """Behind the last commit: normal after a kill."""
+        return self._file.size - self._commit.frame.end
+
+    @property
+    def uuid(self):
+        return uuids.UUID(bytes=self._uuid)
+
+    @property
+    def version(self):
+        return self._head.major, self._head.minor
+
+    @property
+    def resume_state(self):
+        """What the producer handed to its last commit."""
+        try:
+            return self._file.section(self._commit.frame, self._commit.resume)
+        except Error as error:
+            self._refuse(f"resume state of the commit at byte {self._commit.frame.offset}: {error}")
 
     # Opening: README.md, "Opening".
 
@@ -632,12 +787,12 @@ class Reader:
             if isinstance(frame, str):
                 offset += PAGE
                 continue
-            known = frame.kind in (b"HEAD", b"SLOT", b"CHNK", b"CMIT")
+            known = frame.kind in (b"HEAD", b"SLOT", b"CHNK", b"TCHK", b"CMIT")
             if frame.flags & REQUIRED and not known:
                 kind = frame.kind.decode("ascii", "replace")
-                self._fail(f"written by version {self._head.major}.{self._head.minor} of the "
-                           f"format, with a frame {kind} at byte {offset} that must be understood "
-                           "to read it; use a newer module")
+                self._refuse(f"written by version {self._head.major}.{self._head.minor} of the "
+                             f"format, with a frame {kind} at byte {offset} that must be "
+                             "understood to read it; use a newer module")
             yield frame
             offset = frame.end
 
@@ -658,84 +813,100 @@ class Reader:
     def _last_commit(self):
         last, promised, promised_at = None, 0, 0
         for sequence, offset in self._slot_records():
-            last = _decode_commit(self._frame(offset))
+            last = self._decode_commit(self._frame(offset))
             if last and last.frame.sequence == sequence:
                 break
             last = None
             if sequence > promised:
                 promised, promised_at = sequence, offset
         for frame in self._hop(last.frame.end if last else self._head_frame.end):
-            last = _decode_commit(frame) or last
+            last = self._decode_commit(frame) or last
         if promised and (last is None or last.frame.sequence < promised):
-            self._fail(f"damaged: the commit at byte {promised_at} is unreadable, so the records "
-                       f"from {last.records if last else 0} on are lost; 'psf verify' names every "
-                       "fault")
+            records = last.totals[0].records if last else 0
+            self._refuse(f"damaged: the commit at byte {promised_at} is unreadable, so the records "
+                         f"from {records} on are lost; 'psf verify' names every fault")
         if last is None:
-            self._fail("holds no committed pass: its writer was stopped before the first; render "
-                       "again")
+            self._refuse("holds no committed pass: its writer was stopped before the first; render "
+                         "again")
         return last
 
-    def _index_part(self, commit):
-        """Nothing where its checksum is wrong."""
+    def _decode_commit(self, frame):
+        return _decode_commit(frame, len(self._head.tables) - 1)
+
+    def _indices_of(self, commit):
+        """[Its index of the paths, that of each table]; the first is nothing where its checksum is
+        wrong."""
         try:
-            return np.frombuffer(self._file.section(commit.frame, commit.index), ENTRY)
+            paths = np.frombuffer(self._file.section(commit.frame, commit.index), ENTRY)
         except Error as error:
             if str(error).startswith(f"{self.path}: "):
                 raise
-            return None
+            paths = None
+        return [paths, *commit.table_indices]
 
-    def _load_index(self):
-        """The index of the last commit and of its bases; nothing where one is unreadable."""
+    def _load_indices(self):
+        """The indices of the last commit and of its bases; nothing where one is unreadable."""
         parts, at = [], self._commit
-        self._leap = 0, 0  # offset and chunks of the newest commit that those of a resume build on
+        # Offset and chunks of the newest commit that those of a resume build on.
+        self._leap = 0, [0] * len(at.totals)
         while True:
-            if at.number % INDEX_LEAP == 0 and not self._leap[0]:
-                self._leap = at.frame.offset, at.chunks
-            part = self._index_part(at)
-            if part is None:
+            parts.append(self._indices_of(at))
+            if parts[-1][0] is None:
                 return None
-            parts.append(part)
-            if at.first_chunk == 0:
+            if at.totals[0].first_chunk == 0:
                 break
-            base = _decode_commit(self._frame(at.base))
-            if base is None or base.chunks != at.first_chunk:
+            base = self._decode_commit(self._frame(at.base))
+            if base is None or any(base_total.chunks != total.first_chunk for base_total, total
+                                   in zip(base.totals, at.totals)):
                 return None
             at = base
-        index = np.concatenate(parts[::-1])
-        return index if self._is_complete(index) else None
+        if at.number % INDEX_LEAP == 0:
+            self._leap = at.frame.offset, [total.chunks for total in at.totals]
+        indices = [np.concatenate(table[::-1]) for table in zip(*parts)]
+        complete = all(map(self._is_complete, self._head.tables, indices))
+        return indices if complete else None
 
-    def _is_complete(self, index):
+    def _is_complete(self, table, index):
+        """Each pass has paths, but not each has records of a table."""
         commit, end = self._commit, self._commit.frame.offset
-        if len(index) != commit.chunks:
+        total = commit.totals[table.number]
+        if len(index) != total.chunks:
             return False
         if len(index) == 0:
-            return commit.records == 0 and commit.passes == 0
+            return total.records == 0 and (table.number > 0 or commit.passes == 0)
         offset, length, count = index["offset"], index["length"], index["count"].astype(np.uint64)
-        step = np.diff(index["pass"].astype(np.int64), prepend=-1)
-        if ((count < 1).any() or (count > self._head.capacity).any() or (offset > end).any()
+        if ((count < 1).any() or (count > table.capacity).any() or (offset > end).any()
                 or (length > np.uint64(end) - offset).any() or (length < PAGE).any()
                 or (offset % np.uint64(PAGE)).any()):
             return False
-        total = np.cumsum(count)
-        return bool(offset[0] >= self._head_frame.end
+        behind, last = np.cumsum(count), int(index["pass"][-1])
+        step = np.diff(index["pass"].astype(np.int64), prepend=-1)
+        passes = (last < commit.passes and (step[1:] >= 0).all() if table.number else
+                  last + 1 == commit.passes and step[0] == 1 and (step >= 0).all()
+                  and (step <= 1).all())
+        return bool(passes and offset[0] >= self._head_frame.end
                     and (offset[1:] >= offset[:-1] + length[:-1]).all()
-                    and (index["first"] == total - count).all() and total[-1] == commit.records
-                    and step[0] == 1 and (step >= 0).all() and (step <= 1).all()
-                    and int(index["pass"][-1]) + 1 == commit.passes)
+                    and (index["first"] == behind - count).all() and behind[-1] == total.records)
 
-    def _scan_index(self):
-        """From all valid chunks and indices, where the index of the last commit is unreadable."""
-        found = {}
+    def _scan_indices(self):
+        """From all valid chunks and indices, where an index of the last commit is unreadable."""
+        tables = self._head.tables
+        found = [{} for _ in tables]  # of each, entries by their first record
         for frame in self._hop(self._head_frame.end):
-            if frame.kind == b"CHNK":
-                with contextlib.suppress(Error):
-                    entry = self._decode_chunk(frame)[0]
-                    found.setdefault(entry[2], entry)
-            commit = _decode_commit(frame)
-            part = self._index_part(commit) if commit else None
-            for entry in part if part is not None else ():
-                found.setdefault(int(entry["first"]), entry.item())
-        records, following, missing, entries = self.records, 0, [], []
+            if frame.kind in (b"CHNK", b"TCHK"):
+                for table in tables:
+                    with contextlib.suppress(Error):
+                        entry = _decode_chunk(frame, table)[0]
+                        found[table.number].setdefault(entry[2], entry)
+            commit = self._decode_commit(frame)
+            for entries, part in zip(found, self._indices_of(commit) if commit else ()):
+                for entry in part if part is not None else ():
+                    entries.setdefault(int(entry["first"]), entry.item())
+        return [self._join(*each) for each in zip(tables, found)]
+
+    def _join(self, table, found):
+        """The index of a table from the entries found of it."""
+        records, following, missing, entries = self._commit.totals[table.number][0], 0, [], []
         for first in sorted(found):
             if first >= records:
                 break
@@ -746,28 +917,23 @@ class Reader:
         if following < records:
             missing.append(_record_range(following, records - following))
         if missing:
-            self._fail(f"damaged: cannot be found: {', '.join(missing)}; 'psf verify' names every "
-                       "fault")
+            self._refuse(f"damaged: {table.label}cannot be found: {', '.join(missing)}; "
+                         "'psf verify' names every fault")
         index = np.array(entries, ENTRY)
-        if not self._is_complete(index):
-            self._fail(f"damaged: the totals of the commit at byte {self._commit.frame.offset} do "
-                       "not add up; 'psf verify' names every fault")
+        if not self._is_complete(table, index):
+            self._refuse(f"damaged: {table.label}the totals of the commit at byte "
+                         f"{self._commit.frame.offset} do not add up; 'psf verify' names every "
+                         "fault")
         return index
 
     def close(self):
-        if self._file.descriptor >= 0:
-            os.close(self._file.descriptor)
-            self._file.descriptor = -1
+        self._file.close()
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
         self.close()
-
-    def __del__(self):
-        if hasattr(self, "_pass_bounds"):  # it was opened
-            self.close()
 
 
 def _parallel(work, items, size):
@@ -788,33 +954,96 @@ def open(path):  # noqa: A001: pvb.open is what one looks for
 
 # --- writing -------------------------------------------------------------------------------------
 
+class _Filling:
+    """A table of a Writer."""
+
+    def __init__(self, declared):
+        self.declared = declared
+        self.pending = [[] for _ in declared.channels]  # arrays of the chunk being filled
+        self.pending_count = 0
+        self.index = np.empty(0, ENTRY)  # up to the last commit
+        self.new = []  # entries since
+        self.records = self.appended = 0  # committed; in chunks that are written
+
+    def take_new(self):
+        if self.new:
+            self.index = np.concatenate((self.index, np.array(self.new, ENTRY)))
+            self.new = []
+
+
+def _stored(place, channel, values, count):
+    """(count, components) as stored. `place`: where errors are."""
+    def refuse(why):
+        raise Error(f"{place}channel {channel.name}: {why}")
+
+    if channel.encoding == "octahedral":
+        if values.shape == (count, 3) and values.dtype.kind == "f":
+            return encode_octahedral(values)
+        if values.dtype != np.uint16:
+            refuse(f"expected ({count}, 3) floats or ({count}, 2) u16 codes, got "
+                   f"{values.shape} of {values.dtype}")
+    if values.dtype != channel.dtype:
+        if values.dtype.kind in "biu" and channel.dtype.kind == "u":
+            limit = np.iinfo(channel.dtype).max
+            if values.size and (values.min() < 0 or values.max() > limit):
+                refuse(f"values from {values.min()} to {values.max()}; {channel.type} holds 0 "
+                       f"to {limit}")
+        elif values.dtype.kind not in "biuf" or channel.dtype.kind != "f":
+            refuse(f"{values.dtype} cannot be stored as {channel.type}")
+        with np.errstate(over="ignore"):
+            values = values.astype(channel.dtype)
+    if values.ndim == 0:
+        return np.full((count, channel.components), values)
+    if values.shape != (count, channel.components):
+        if values.shape != (count,) or channel.components != 1:
+            refuse(f"expected ({count}, {channel.components}) values, got {values.shape}")
+        values = values.reshape(count, 1)
+    return np.ascontiguousarray(values)
+
+
 class Writer:
     """Made by create() or resume(). The first error sticks: every later call raises it again, and
     the last commit stays readable."""
 
-    def __init__(self, path, descriptor, channels, capacity, codec, sync, uuid):
-        self.path, self.channels, self._capacity = path, channels, capacity
+    def __init__(self, path, descriptor, tables, codec, sync, uuid):
+        self.path, self._tables = path, [_Filling(declared) for declared in tables]
         self._descriptor, self._codec, self._sync, self._uuid = descriptor, codec, sync, uuid
         self._name = path  # of the file now
         self._replaced = -1  # holds the lock of a file that the first commit will replace
         self._error = None
-        self._pending = [[] for _ in channels]  # arrays of the chunk being filled
-        self._pending_count = 0
         self._end = self._sequence = self._committed_end = 0
-        self._index = np.empty(0, ENTRY)  # up to the last commit
-        self._new = []  # entries since
-        self._commits = self.passes = self.records = self._appended = 0
-        self._previous = self._leap = (0, 0)  # offset and chunks of a commit
+        self._commits = self.passes = 0
+        # Offset and chunks of commits.
+        self._none = self._previous = self._leap = 0, [0] * len(tables)
         self._whole = False  # whether the next commit must carry the whole index
         self._closed = False  # whether the last commit has the flag
         self._front, self._slot = b"", 0
         self.resume_state = b""  # of the last commit
 
+    @property
+    def records(self):
+        """Committed."""
+        return self._tables[0].records
+
+    @property
+    def channels(self):
+        """Name -> Channel, in the order of the file."""
+        return self._tables[0].declared.channels
+
+    @property
+    def tables(self):
+        """Name -> channels of each table."""
+        return {table.declared.name: table.declared.channels for table in self._tables[1:]}
+
     def append(self, columns=None, **more):
         """Appends records to the current pass: an array for every channel, (n, components) or (n,).
         A single value stands for n equal ones. `columns`: a dict, for names that are no keywords.
         Vectors are encoded where the channel is octahedral; u16 x 2 are taken as codes."""
-        self._guard(self._append, {**(columns or {}), **more})
+        self._guard(self._append, PATHS, {**(columns or {}), **more})
+
+    def append_to(self, table, /, columns=None, **more):
+        """The same for a table; a pass may have no record of it."""
+        self._guard(self._append, table, {**(columns or {}), **more})
 
     def commit(self, resume_state=b""):
         """Ends the pass, and makes all that was appended part of the file, also after a crash.
@@ -873,68 +1102,43 @@ class Writer:
 
     # Records.
 
-    def _append(self, columns):
-        for name in columns:
-            if name not in self.channels:
-                raise Error(f"{self.path}: has no channel {name}; it has "
-                            f"{', '.join(self.channels)}")
-        for name in self.channels:
-            if name not in columns:
-                raise Error(f"{self.path}: no values for channel {name}")
-        columns = {name: np.asarray(value) for name, value in columns.items()}
+    def _append(self, name, columns):
+        table = next((each for each in self._tables if each.declared.name == name), None)
+        if table is None:
+            raise Error(f"{self.path}: has no table {name}; it has "
+                        f"{', '.join(self.tables) or 'none'}")
+        channels, place = table.declared.channels, f"{self.path}: {table.declared.label}"
+        for channel in columns:
+            if channel not in channels:
+                raise Error(f"{place}has no channel {channel}; it has {', '.join(channels)}")
+        for channel in channels:
+            if channel not in columns:
+                raise Error(f"{place}no values for channel {channel}")
+        columns = {channel: np.asarray(value) for channel, value in columns.items()}
         counts = {len(value) for value in columns.values() if value.ndim}
         if len(counts) != 1:
-            raise Error(f"{self.path}: columns of {sorted(counts)} records; they must be equal")
-        count = counts.pop()
-        stored = [self._stored(channel, columns[name], count)
-                  for name, channel in self.channels.items()]
+            raise Error(f"{place}columns of {sorted(counts)} records; they must be equal")
+        count, capacity = counts.pop(), table.declared.capacity
+        stored = [_stored(place, channel, columns[channel.name], count)
+                  for channel in channels.values()]
         done = 0
         while done < count:
-            taken = min(count - done, self._capacity - self._pending_count)
-            for pending, column in zip(self._pending, stored):
+            taken = min(count - done, capacity - table.pending_count)
+            for pending, column in zip(table.pending, stored):
                 part = column[done:done + taken]
                 # A whole chunk is written before we return; the caller may change the rest.
-                pending.append(part if taken == self._capacity else part.copy())
-            self._pending_count += taken
+                pending.append(part if taken == capacity else part.copy())
+            table.pending_count += taken
             done += taken
-            if self._pending_count == self._capacity:
-                self._flush()
+            if table.pending_count == capacity:
+                self._flush(table)
 
-    def _stored(self, channel, values, count):
-        """(count, components) as stored."""
-        def refuse(why):
-            raise Error(f"{self.path}: channel {channel.name}: {why}")
-
-        if channel.encoding == "octahedral":
-            if values.shape == (count, 3) and values.dtype.kind == "f":
-                return encode_octahedral(values)
-            if values.dtype != np.uint16:
-                refuse(f"expected ({count}, 3) floats or ({count}, 2) u16 codes, got "
-                       f"{values.shape} of {values.dtype}")
-        if values.dtype != channel.dtype:
-            if values.dtype.kind in "biu" and channel.dtype.kind == "u":
-                limit = np.iinfo(channel.dtype).max
-                if values.size and (values.min() < 0 or values.max() > limit):
-                    refuse(f"values from {values.min()} to {values.max()}; {channel.type} holds 0 "
-                           f"to {limit}")
-            elif values.dtype.kind not in "biuf" or channel.dtype.kind != "f":
-                refuse(f"{values.dtype} cannot be stored as {channel.type}")
-            with np.errstate(over="ignore"):
-                values = values.astype(channel.dtype)
-        if values.ndim == 0:
-            return np.full((count, channel.components), values)
-        if values.shape != (count, channel.components):
-            if values.shape != (count,) or channel.components != 1:
-                refuse(f"expected ({count}, {channel.components}) values, got {values.shape}")
-            values = values.reshape(count, 1)
-        return np.ascontiguousarray(values)
-
-    def _flush(self):
-        if self._pending_count == 0:
+    def _flush(self, table):
+        if table.pending_count == 0:
             return
-        count, columns = self._pending_count, []
+        count, columns, number = table.pending_count, [], table.declared.number
         data = [(parts[0] if len(parts) == 1 else np.concatenate(parts)).view("u1").reshape(-1)
-                for parts in self._pending]
+                for parts in table.pending]
         encoded = [None] * len(data)
 
         def encode(k):
@@ -943,16 +1147,17 @@ class Writer:
 
         _parallel(encode, range(len(data)), sum(column.size for column in data))
         place = _align(PREFIX.size + CHUNK.size + COLUMN.size * len(data), ALIGNMENT)
-        directory = bytearray(CHUNK.pack(self._appended, count, self.passes, len(data)))
+        directory = bytearray(CHUNK.pack(table.appended, count, self.passes, len(data), number))
         for k, (codec, filtered, crc, stored) in enumerate(encoded):
             directory += COLUMN.pack(k, codec, filtered, crc, place, len(stored))
             columns.append((place, stored))
             place = _align(place + len(stored), ALIGNMENT)
-        frame = self._write_frame(b"CHNK", REQUIRED, directory, columns)
-        self._new.append((*frame[:2], self._appended, count, self.passes))
-        self._appended += count
-        self._pending = [[] for _ in self._pending]
-        self._pending_count = 0
+        kind, flags = (b"TCHK", 0) if number else (b"CHNK", REQUIRED)
+        frame = self._write_frame(kind, flags, directory, columns)
+        table.new.append((*frame[:2], table.appended, count, self.passes))
+        table.appended += count
+        table.pending = [[] for _ in table.pending]
+        table.pending_count = 0
 
     # Commits.
 
@@ -960,8 +1165,9 @@ class Writer:
         if len(resume_state) > MAX_RESUME:
             raise Error(f"{self.path}: {len(resume_state)} bytes of resume state; at most "
                         f"{MAX_RESUME} fit")
-        self._flush()
-        if self._appended == self.records:
+        for table in self._tables:
+            self._flush(table)
+        if self._tables[0].appended == self.records:
             raise Error(f"{self.path}: a pass without records cannot be committed")
         if self.passes == 2**32 - 1:
             raise Error(f"{self.path}: more than 2^32 - 1 passes")
@@ -970,32 +1176,59 @@ class Writer:
         self._write_commit(0)
 
     def _close(self):
-        if self._pending_count or self._appended != self.records:
-            raise Error(f"{self.path}: records were appended but not committed")
+        for table in self._tables:
+            if table.pending_count or table.appended != table.records:
+                raise Error(f"{self.path}: {table.declared.label}records were appended but not "
+                            "committed")
         if self._commits == 0:
             raise Error(f"{self.path}: closed without a pass")
         if not self._closed:
             self._write_commit(CLOSED)
         self._release()
 
+    def _choose_base(self, flags):
+        """(Offset, chunks) of the commit whose indices the next one builds on: by the rule of
+        README.md, "The index", or the next of it with which the tables' indices fit."""
+        number, rule = self._commits + 1, (self._none, self._leap, self._previous)
+        whole = flags == CLOSED or number % INDEX_LEAP == 0 or self._whole
+        for base in rule[0 if whole else 1 if number % INDEX_STEP == 0 else 2:]:
+            if COMMIT_SIZE + self._tables_size(base[1]) <= MAX_DIRECTORY:
+                return base
+        raise Error(f"{self.path}: the tables have more chunks in this pass than a commit can "
+                    "name; use larger chunks")
+
+    def _tables_size(self, first):
+        if len(self._tables) == 1:
+            return 0
+        return TABLES.size + sum(TOTAL.size + ENTRY.itemsize * (len(table.index) - start)
+                                 for table, start in zip(self._tables[1:], first[1:]))
+
+    def _tables_directory(self, first):
+        """What a commit's directory has of the tables; `first`: where their indices start."""
+        if len(self._tables) == 1:
+            return b""
+        out = bytearray(TABLES.pack(len(self._tables) - 1))
+        for table, start in zip(self._tables[1:], first[1:]):
+            out += TOTAL.pack(table.appended, len(table.index), start)
+        for table, start in zip(self._tables[1:], first[1:]):
+            out += table.index[start:].tobytes()
+        return out
+
     def _write_commit(self, flags):
-        number = self._commits + 1
-        if flags == CLOSED or number % INDEX_LEAP == 0 or self._whole:
-            base = 0, 0
-        else:
-            base = self._leap if number % INDEX_STEP == 0 else self._previous
-        if self._new:
-            self._index = np.concatenate((self._index, np.array(self._new, ENTRY)))
-            self._new = []
-        sections = (self._index[base[1]:].tobytes(), self._front, self.resume_state)
-        directory = bytearray(COMMIT.pack(flags, number, self._appended, len(self._index),
-                                          self.passes, self._previous[0], *base, 0))
-        place, parts = _align(PREFIX.size + COMMIT_SIZE, ALIGNMENT), []
+        number, paths = self._commits + 1, self._tables[0]
+        for table in self._tables:
+            table.take_new()
+        base, first = self._choose_base(flags)
+        sections = (paths.index[first[0]:].tobytes(), self._front, self.resume_state)
+        directory = bytearray(COMMIT.pack(flags, number, paths.appended, len(paths.index),
+                                          self.passes, self._previous[0], base, first[0], 0))
+        tables = self._tables_directory(first)
+        place, parts = _align(PREFIX.size + COMMIT_SIZE + len(tables), ALIGNMENT), []
         for section in sections:
             directory += SECTION.pack(place, len(section), zlib.crc32(section))
             parts.append((place, section))
             place = _align(place + len(section), ALIGNMENT)
-        directory += bytes(COMMIT_SIZE - len(directory))
+        directory += bytes(COMMIT_SIZE - len(directory)) + tables
         self._flush_to_disk()
         frame = self._write_frame(b"CMIT", REQUIRED, directory, parts)
         self._flush_to_disk()
@@ -1004,10 +1237,12 @@ class Writer:
         self._write(self._slot + (1024 if number % 2 else 2048), [record])
         if self._name != self.path:
             self._appear()
-        self._commits, self.records, self._committed_end = number, self._appended, self._end
-        self._previous = frame[0], len(self._index)
+        self._commits, self._committed_end = number, self._end
+        for table in self._tables:
+            table.records = table.appended
+        self._previous = frame[0], [len(table.index) for table in self._tables]
         self._whole, self._closed = False, flags == CLOSED
-        if number % INDEX_LEAP == 0:
+        if number % INDEX_LEAP == 0 and base == 0:
             self._leap = self._previous
 
     def _appear(self):
@@ -1074,17 +1309,49 @@ def _codec(path, codec):
     return ZSTD if codec == "zstd" else RAW
 
 
-def _channels(path, channels):
-    channels = [Channel(*channel) for channel in channels]
-    try:
-        for channel in channels:
-            channel.check()
-    except Error as error:
-        raise Error(f"{path}: {error}") from None
-    named = {channel.name: channel for channel in channels}
-    if not 1 <= len(channels) <= 256 or len(named) != len(channels):
-        raise Error(f"{path}: 1 to 256 channels of different names are needed")
-    return named
+def _declare(path, channels, tables, capacity):
+    """[_Declared] of the paths and the tables. `capacity`: a number, or a dict by name."""
+    out = []
+    tables = dict(tables or {})
+    if len(tables) > MAX_TABLES:
+        raise Error(f"{path}: {len(tables)} tables; at most {MAX_TABLES} are possible")
+    for number, (name, given) in enumerate([(PATHS, channels), *tables.items()]):
+        given = [Channel(*channel) for channel in given]
+        named = {channel.name: channel for channel in given}
+        own = capacity.get(name, 65536) if isinstance(capacity, dict) else capacity
+        table = _Declared(number, name, own, named)
+        try:
+            _check_name("table", name)
+            if number and name == PATHS:
+                raise Error(f"no table can have the name {PATHS}; choose another")
+            for channel in given:
+                channel.check()
+            if not 1 <= len(given) <= MAX_CHANNELS or len(named) != len(given):
+                raise Error(f"1 to {MAX_CHANNELS} channels of different names are needed")
+            check_capacity(own, given)
+        except Error as error:
+            raise Error(f"{path}: {table.label}{error}") from None
+        out.append(table)
+    return out
+
+
+def _encode_channels(channels):
+    return b"".join(CHANNEL.pack(channel.name.encode("ascii"), TYPES[channel.type][0],
+                                 channel.components, ENCODINGS.index(channel.encoding))
+                    for channel in channels.values())
+
+
+def _encode_head(tables, metadata):
+    paths = tables[0]
+    minor, optional = (1, HAS_TABLES) if len(tables) > 1 else (0, 0)
+    out = HEAD.pack(1, minor, 0, optional, paths.capacity, len(paths.channels), len(metadata))
+    out += _encode_channels(paths.channels) + metadata
+    if len(tables) > 1:
+        out += TABLES.pack(len(tables) - 1)
+    for table in tables[1:]:
+        out += TABLE.pack(table.name.encode("ascii"), table.capacity, len(table.channels))
+        out += _encode_channels(table.channels)
+    return out
 
 
 def _metadata(path, metadata):
@@ -1125,48 +1392,43 @@ def _lock(path, flags, blocked):
             raise
 
 
-def create(path, channels, metadata=None, codec="raw", chunk_capacity=65536, sync=True, uuid=None):
+def create(path, channels, metadata=None, codec="raw", chunk_capacity=65536, sync=True, uuid=None,
+           tables=None):
     """A Writer of a new file, which appears under its name with the first commit (until then it is
     `path`.partial). `channels`: of Channel, or (name, type, components, encoding). `sync`: flush to
-    the disk at each commit."""
+    the disk at each commit. `tables`: a dict, name -> channels. `chunk_capacity`: most records a
+    chunk, or a dict of it by the tables' names and "paths"."""
     path = os.fspath(path)
-    code, channels = _codec(path, codec), _channels(path, channels)
+    code = _codec(path, codec)
+    declared = _declare(path, channels, tables, chunk_capacity)
     text, _ = _metadata(path, metadata)
-    try:
-        check_capacity(chunk_capacity, channels.values())
-    except Error as error:
-        raise Error(f"{path}: {error}") from None
     if not path or (os.path.exists(path) and not os.path.isfile(path)):
         raise Error(f"'{path}': cannot create: not the name of a regular file; choose another")
-    directory = bytearray(HEAD.pack(1, 0, 0, 0, chunk_capacity, len(channels), len(text)))
-    for channel in channels.values():
-        directory += CHANNEL.pack(channel.name.encode("ascii"), TYPES[channel.type][0],
-                                  channel.components, ENCODINGS.index(channel.encoding))
     # A name as long as the file system takes it is cut: its last part to 255 bytes with ".partial".
     folder, name = os.path.split(os.fsencode(path))
     partial = os.fsdecode(os.path.join(folder, name[:247] + b".partial"))
     with _system(path, "create"):
         descriptor = _lock(partial, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, partial)
-        writer = Writer(path, descriptor, channels, chunk_capacity, code, sync,
-                        (uuid or uuids.uuid4()).bytes)
+        writer = Writer(path, descriptor, declared, code, sync, (uuid or uuids.uuid4()).bytes)
         writer._name = partial
         try:
             # Held until it is replaced, so that nobody goes on writing what is about to vanish.
             writer._replaced = _lock(path, os.O_RDONLY, path)
             os.ftruncate(descriptor, 0)
-            writer._start(directory + text)
+            writer._start(_encode_head(declared, text))
         except BaseException:
             writer.abort()
             raise
     return writer
 
 
-def resume(path, channels, metadata=None, codec="raw", sync=True):
+def resume(path, channels, metadata=None, codec="raw", sync=True, tables=None):
     """A Writer that goes on behind the last commit of a file, whose resume state it has as
-    `resume_state`; closed or not. Refuses where the channels are others, or the `scene_hash` of the
-    metadata where they are given. Metadata and chunk capacity stay those of the file."""
+    `resume_state`; closed or not. Refuses where the channels or tables are others, or the
+    `scene_hash` of the metadata where they are given. Metadata and chunk capacities stay those of
+    the file."""
     path = os.fspath(path)
-    code, channels = _codec(path, codec), _channels(path, channels)
+    code, declared = _codec(path, codec), _declare(path, channels, tables, 1)
     given = None if metadata is None else _metadata(path, metadata)[1]
     with _system(path, "open"):
         descriptor = _lock(path, os.O_RDWR, path)
@@ -1174,20 +1436,26 @@ def resume(path, channels, metadata=None, codec="raw", sync=True):
         raise Error(f"{path}: cannot resume: there is no such file; create it")
     try:
         with Reader(path) as reader:
-            if list(reader.channels.values()) != list(channels.values()):
-                raise Error(f"{path}: cannot resume: its channels are others; use a new name")
+            if reader.version > (1, 1) or reader._head.optional & ~HAS_TABLES:
+                raise Error(f"{path}: cannot resume: written by version {reader._head.major}."
+                            f"{reader._head.minor} of the format; use a newer module")
+            for what, own, wanted in (("channels", reader._head.tables[:1], declared[:1]),
+                                      ("tables", reader._head.tables[1:], declared[1:])):
+                if [(table.name, list(table.channels.values())) for table in own] != [
+                        (table.name, list(table.channels.values())) for table in wanted]:
+                    raise Error(f"{path}: cannot resume: its {what} are others; use a new name")
             if given is not None and given.get("scene_hash") != reader.metadata.get("scene_hash"):
                 raise Error(f"{path}: cannot resume: it is of another scene; use a new name")
-            writer = Writer(path, descriptor, channels, reader.chunk_capacity, code, sync,
-                            reader._uuid)
+            writer = Writer(path, descriptor, reader._head.tables, code, sync, reader._uuid)
             last, writer.resume_state = reader._commit, reader.resume_state
             writer._front, writer._slot = reader._head_frame.front, reader._head_frame.end
-            writer._index, writer._leap = reader.chunks, reader._leap
+            for table, own in zip(writer._tables, (reader, *reader.tables.values())):
+                table.index, table.records, table.appended = own.chunks, own.records, own.records
+            writer._leap = reader._leap
             writer._whole, writer._closed = reader._scanned, reader.closed
         writer._end = writer._committed_end = last.frame.end
         writer._sequence, writer._commits = last.frame.sequence + 1, last.number
-        writer._previous = last.frame.offset, last.chunks
-        writer.records = writer._appended = last.records
+        writer._previous = last.frame.offset, [total.chunks for total in last.totals]
         writer.passes = last.passes
         with _system(path, "write"):
             os.ftruncate(descriptor, writer._end)
@@ -1214,9 +1482,13 @@ def _summary(path):
         for camera in metadata.get("cameras", []):
             print(f"  camera      {camera.get('name')}: {camera.get('width')} x "
                   f"{camera.get('height')}")
-        for channel in reader.channels.values():
-            note = " octahedral" if channel.encoding == "octahedral" else ""
-            print(f"  {channel.name:<20} {channel.type} x {channel.components}{note}")
+        for table in (reader, *reader.tables.values()):
+            if table is not reader:
+                print(f"  table {table.name}: {table.records:,} records, {len(table.chunks):,} "
+                      "chunks")
+            for channel in table.channels.values():
+                note = " octahedral" if channel.encoding == "octahedral" else ""
+                print(f"  {channel.name:<20} {channel.type} x {channel.components}{note}")
 
 
 if __name__ == "__main__":

@@ -19,6 +19,7 @@ namespace psf::run {
   const std::string file = std::filesystem::path(dump.reader().path()).filename().string();
   attributes.insert(attributes.begin() + 1,
                     {{"psf:dump", file}, {"psf:dump-uuid", dump.reader().uuid()}});
+  if (dump.vertex_rule()) attributes.emplace_back("psf:vertex", to_text(*dump.vertex_rule()));
   for (const auto& [name, text] : filter::describe(parameters)) {
     attributes.emplace_back("psf:" + name, text);
   }

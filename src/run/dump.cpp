@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "filter/places.h"
 #include "formats/layout/channels.h"
+#include "run/vertex_cut.h"
 
 namespace psf::run {
 namespace {
@@ -58,7 +59,9 @@ void make_finite(BlockRecords::LayerColumns& layer) {
 
 }  // namespace
 
-Dump::Dump(const std::string& path) : reader_(path), metadata_(metadata_of(reader_)) {
+Dump::Dump(const std::string& path, const std::optional<VertexRule>& rule)
+    : reader_(path), metadata_(metadata_of(reader_)), rule_(rule) {
+  if (rule_) static_cast<void>(VertexCut(reader_, *rule_, metadata_.shade_rate));
   if (metadata_.cameras.empty()) {
     throw Error(ErrorCode::bad_input,
                 path +
@@ -94,9 +97,14 @@ void Dump::set_pass_bounds() {
   pass_bounds_.push_back(reader_.records());
 }
 
+bool Dump::has(std::string_view channel) const {
+  return reader_.head().find(channel) &&
+         (!rule_ || VertexCut(reader_, *rule_, metadata_.shade_rate).has(channel));
+}
+
 std::optional<std::size_t> Dump::find(std::string_view channel) const {
   const std::optional<std::size_t> place = reader_.head().find(channel);
-  if (!place) return std::nullopt;
+  if (!place || !has(channel)) return std::nullopt;
   const formats::Channel& found = reader_.head().channels[*place];
   const formats::ChannelInfo& known = *formats::channel_info(channel);
   const bool octahedral = found.encoding == formats::Encoding::octahedral;
@@ -194,6 +202,7 @@ void Dump::read(const filter::PathRange& range, const ChannelSet& channels,
     out.layer_views.push_back({layer.contribution, layer.unfiltered});
   }
   if (!channels.flags) out.flags.assign(count, filter::kHasVertex | filter::kShaded);
+  if (rule_) VertexCut(reader_, *rule_, metadata_.shade_rate).apply(range, out);
   check_pixels(range, out);
 }
 

@@ -12,6 +12,7 @@
 #include "formats/read/reader.h"
 #include "run/block_records.h"
 #include "run/light_layers.h"
+#include "run/vertex_rule.h"
 
 namespace psf::run {
 
@@ -27,8 +28,9 @@ struct ChannelSet {
 class Dump {
  public:
   // Throws what formats::Reader throws; Error{bad_input} where there is no committed pass or no
-  // camera.
-  explicit Dump(const std::string& path);
+  // camera. With a rule for the vertex also what VertexCut throws: x_i is then another vertex of each
+  // path. Without one x_i is what the file says.
+  explicit Dump(const std::string& path, const std::optional<VertexRule>& rule = {});
 
   // Takes in what was committed since the file was read; returns whether there was anything new.
   // Throws what the constructor throws.
@@ -40,6 +42,10 @@ class Dump {
   [[nodiscard]] std::uint64_t pixels() const { return pixels_; }  // number over all cameras
   // The first path of each pass, and the end of the last one.
   [[nodiscard]] const std::vector<std::uint64_t>& pass_bounds() const { return pass_bounds_; }
+
+  [[nodiscard]] const std::optional<VertexRule>& vertex_rule() const { return rule_; }
+  // Whether the paths have a channel, for the vertex that is chosen.
+  [[nodiscard]] bool has(std::string_view channel) const;
 
   // The channels that `parameters` use; with `guides`, also normal and reflectance where the file
   // has them. Throws Error{bad_input} that names a channel that is missing or has another type, and
@@ -65,6 +71,7 @@ class Dump {
   std::vector<filter::CameraView> cameras_;
   std::uint64_t pixels_ = 0;
   std::vector<std::uint64_t> pass_bounds_;
+  std::optional<VertexRule> rule_;
 };
 
 }  // namespace psf::run

@@ -50,6 +50,13 @@ class DumpFilter {
   static ChannelSet channels_of(const Dump& dump, const FilterRequest& run) {
     ChannelSet channels = dump.select(run.parameters, run.layers.albedo || run.layers.normal);
     channels.layers = light_layers(dump.reader(), run.layers.light);
+    const auto& rule = dump.vertex_rule();
+    if (!channels.layers.empty() && rule && rule->kind != VertexRule::Kind::first_rough) {
+      throw Error(ErrorCode::bad_input,
+                  dump.reader().path() +
+                      ": its layers of the light are those of the renderer's vertex; --layers none "
+                      "does without them");
+    }
     return channels;
   }
 

@@ -17,7 +17,7 @@ std::string switch_off_missing(const Dump& dump, std::span<filter::Parameters> s
   for (filter::Parameters& set : sets) {
     for (const filter::ChannelNeed& need : filter::optional_channels(set)) {
       if (!need.term || (asked & filter::bit(*need.term)) != 0) continue;
-      if (dump.reader().head().find(need.channel)) continue;
+      if (dump.has(need.channel)) continue;
       set.weights.switch_off(*need.term);
       note(channels, need.channel);
       note(terms, need.wanted_by);

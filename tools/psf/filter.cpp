@@ -165,7 +165,9 @@ void run(const FilterOptions& options) {
   run.max_memory = options.max_memory;
   run.with_noise = !options.common.json.empty();
   if (options.follow) wait_for_first_pass(options.input);
-  run::Dump dump(options.input);
+  run::Dump dump(options.input, options.vertex.empty()
+                                    ? std::nullopt
+                                    : std::optional(run::parse_vertex_rule(options.vertex)));
   std::vector<std::string> notes;
   fit_terms(dump, {&run.parameters, 1}, filter::asked_terms(chosen.given), notes);
   check_layers(dump, options.layers, run.layers);

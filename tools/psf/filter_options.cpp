@@ -115,6 +115,12 @@ void add_filter_options(CLI::App& command, FilterOptions& options) {
       ->type_name("FILE.exr|.png")
       ->allow_extra_args(false);
   command
+      .add_option("--vertex", options.vertex,
+                  "average at another vertex of the same paths, where the dump has all "
+                  "(psf-render --vertices): the renderer's first rough one, that with K vertices "
+                  "before it, the first of at least roughness T, or at least D away")
+      ->type_name("first-rough|depth:K|roughness:T|distance:D");
+  command
       .add_option("--layers", options.layers,
                   "of an .exr beside the picture: all, none, or some of unfiltered-input, "
                   "neighbors, radius, albedo, normal, and the dump's layers of the light")

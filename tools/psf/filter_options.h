@@ -18,6 +18,7 @@ namespace psf::tools {
 struct FilterOptions : filter::ParameterTexts {
   CommonOptions common;
   std::string input;
+  std::string vertex;  // rule as written; empty: the vertex of the file
   std::vector<std::string> outputs;
   std::string passes, snapshots;  // as written; empty: all passes, no snapshots
   std::string layers = "all";     // layers of EXRs, as written

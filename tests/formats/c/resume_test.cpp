@@ -178,7 +178,7 @@ TEST_CASE("other channels, other metadata, damage or a lock: refused, the file u
   CHECK(resume_error(path, channels, head.metadata).find("psf recover") != std::string::npos);
   CHECK(test::load(path) == damaged);
   Bytes minor = whole;
-  test::put(minor, 66, 2, 1);
+  test::put(minor, 66, 2, 2);
   test::mend(minor, 0);
   test::save(path, minor);
   CHECK(resume_error(path, channels, head.metadata).find("newer") != std::string::npos);

@@ -1,4 +1,5 @@
-"""The values of the golden files, by the formula of ../golden.cpp in plain Python, and their channels."""
+"""The values of the golden files, by the formula of ../golden.cpp in plain Python, and their channels; and tables of
+such values, those of ../c/table_file.cpp."""
 import math
 import struct
 
@@ -71,3 +72,24 @@ def record_bytes(k, record):
 
 def values(k, first=0, count=RECORDS):
     return b"".join(record_bytes(k, record) for record in range(first, first + count))
+
+
+# Name: the numbers of its channels, and most records of a chunk.
+TABLES = {"vertices": (tuple(range(len(CHANNELS))), 16), "photons": ((8, 17), 7)}
+
+
+def table_channels(name):
+    return [CHANNELS[k] for k in TABLES[name][0]]
+
+
+def table_records(name, k):
+    """Records of a table in pass k."""
+    if name == "vertices":
+        return k % 4 * 11
+    return 10 if k % 3 == 2 else 0
+
+
+def table_values(name, channel, first, count):
+    """Stored bytes of a channel, counted from 0 in the table."""
+    table = list(TABLES).index(name)
+    return values(TABLES[name][0][channel], 100000 * (table + 1) + first, count)

@@ -145,7 +145,7 @@ class Fault(Test):
         data, expected = self.make()
         head = 64  # directory of HEAD
         self.assertTrue(self.check_values(self.read(mend(put(data, head + 2, b"\x07"), 0)), expected, "minor"))
-        self.assertTrue(self.check_values(self.read(mend(put(data, head + 8, b"\xFF"), 0)), expected, "optional"))
+        self.assertTrue(self.check_values(self.read(mend(put(data, head + 8, b"\xFD"), 0)), expected, "optional"))
         self.assertIn("written by version 2.0 of the format", self.read(mend(put(data, head, b"\x02"), 0)))
         self.assertIn("written by version 1.0 of the format, with features that must be understood to read it "
                       "(bits 0x4)", self.read(mend(put(data, head + 4, b"\x04"), 0)))

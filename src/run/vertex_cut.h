@@ -1,0 +1,53 @@
+// Makes x_i, alpha_i, c_i and u_i of another vertex of the same paths: formats/README.md, "Tables",
+// the table `vertices`.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "filter/blocks.h"
+#include "formats/read/reader.h"
+#include "run/block_records.h"
+#include "run/vertex_rule.h"
+
+namespace psf::run {
+
+class VertexCut {
+ public:
+  // Throws Error{bad_input} where the dump has no vertices, or none with what the rule looks at.
+  // `shade_rate`: of the metadata. The reader must outlive it.
+  VertexCut(const formats::Reader& reader, const VertexRule& rule, std::uint32_t shade_rate);
+
+  // Whether the records can have a channel of the paths. `visibility` belongs to the vertex that the
+  // renderer selected.
+  [[nodiscard]] bool has(std::string_view channel) const;
+
+  // Changes the records of the paths of `range`, which are those of `out`. Where the rule selects
+  // what the renderer has selected, a record stays as it is, to the last bit. A path of which it
+  // selects nothing has no vertex. Paths are cut in parallel, some thousand at a time, which bounds
+  // the memory. Throws Error{bad_input} where a path has no chain of vertices.
+  void apply(const filter::PathRange& range, BlockRecords& out) const;
+
+ private:
+  struct Vertices;  // of some paths
+  void cut(std::uint64_t pass, std::uint64_t first, std::uint64_t last, std::size_t place,
+           BlockRecords& out) const;
+  [[nodiscard]] std::uint64_t row_of(const formats::Pass& rows, std::uint32_t path) const;
+  [[nodiscard]] Vertices read(std::uint64_t first, std::uint64_t last,
+                              const BlockRecords& out) const;
+  [[nodiscard]] std::size_t select(const Vertices& vertices, std::size_t first,
+                                   std::size_t last) const;
+  void cut_path(const Vertices& vertices, std::size_t first, std::size_t last, std::size_t i,
+                BlockRecords& out) const;
+  [[noreturn]] void fail(std::uint64_t row, std::string_view why) const;
+
+  const formats::Reader& reader_;
+  const formats::TableReader& table_;
+  VertexRule rule_;
+  bool all_shaded_;
+};
+
+}  // namespace psf::run
