@@ -108,6 +108,12 @@ typedef struct pvb_channel {
 #define PVB_DIRECTION {"direction", PVB_F32, 3, PVB_PLAIN}          // unit, toward the camera
 #define PVB_MATERIAL {"material", PVB_U32, 1, PVB_PLAIN}            // a number a material
 #define PVB_ROUGHNESS {"roughness", PVB_F32, 1, PVB_PLAIN}          // in [0, 1]
+#define PVB_FILM {"film", PVB_F32, 2, PVB_PLAIN}                    // pixels, y down
+#define PVB_LENS {"lens", PVB_F32, 2, PVB_PLAIN}                    // of the unit disk
+#define PVB_TIME {"time", PVB_F32, 1, PVB_PLAIN}                    // in [0, 1], of the shutter
+#define PVB_FRAME {"frame", PVB_U32, 1, PVB_PLAIN}
+#define PVB_ALPHA {"alpha", PVB_F32, 1, PVB_PLAIN}                  // coverage: 0 background
+#define PVB_KIND {"kind", PVB_U8, 1, PVB_PLAIN}                     // 0 surface 1 curve 2 volume
 // clang-format on
 
 // Bits of the channel `flags`.

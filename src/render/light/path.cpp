@@ -45,6 +45,7 @@ PathRecord PathIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool s
       record.unfiltered += transport_.met(walk, nullptr, seen);
       return record;
     }
+    record.coverage = 1;
     record.distance += distance;
     record.unfiltered += transport_.met(walk, &surface, seen);
     if (walk.depth >= settings.max_depth) return record;

@@ -53,6 +53,11 @@ class LayerSpace {
   LayerSums sums_;
 };
 
+// A position on the film as a float in its pixel: rounding must not take it to the next one.
+float in_pixel(float position, std::uint32_t pixel) {
+  return std::min(position, std::nextafter(static_cast<float>(pixel + 1), 0.0f));
+}
+
 class Loop {
  public:
   Loop(const Scene& scene, const Integrator& integrator, const RenderSettings& settings,
@@ -62,7 +67,8 @@ class Loop {
         settings_(settings),
         writer_(writer),
         shade_rate_(settings.shade_rate),
-        channels_(record_channels(settings.channels, integrator.layers())) {
+        channels_(record_channels(settings.channels, integrator.layers())),
+        has_sample_(has_sample(channels_)) {
     result_.films.reserve(settings.cameras.size());
     std::size_t largest = 0;
     for (const std::size_t index : settings.cameras) {
@@ -73,7 +79,7 @@ class Loop {
       result_.films.emplace_back(camera.width, camera.height);
     }
     for (auto& slab : slabs_)
-      slab = std::make_unique<Recorder>(std::min(kSlab, largest), integrator.layers());
+      slab = std::make_unique<Recorder>(std::min(kSlab, largest), integrator.layers(), channels_);
   }
 
   // Takes up what a resumed file holds.
@@ -96,6 +102,7 @@ class Loop {
   formats::Writer* writer_;
   ShadeRate shade_rate_;
   std::vector<formats::Channel> channels_;
+  bool has_sample_;  // whether any channel is of CameraSample
   std::vector<View> views_;
   std::uint64_t paths_a_pass_ = 0;
   std::uint64_t paths_done_ = 0;
@@ -227,6 +234,9 @@ void Loop::trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path
   // Without a vertex it is not shaded either way; the flag says that it counts.
   if (!record.has_vertex && settings_.shade_rate > 1) record.shaded = shade;
   recorder.set(slot, camera, y * view.width + x, in_world(record, space_), sums);
+  if (!has_sample_) return;
+  const Vec2 on_lens = view.rays.has_lens() ? concentric_disk(lens) : Vec2(0, 0);
+  recorder.set_sample(slot, {{in_pixel(position.x, x), in_pixel(position.y, y)}, on_lens});
 }
 
 void Loop::emit(std::uint64_t pass, std::uint16_t camera, std::size_t count) {
