@@ -180,6 +180,19 @@ TEST_CASE("An alpha that is not finite counts as 1, is told, and takes no light 
   CHECK(same(images(result.pictures), good));
 }
 
+TEST_CASE("The memory of alpha is in the estimate") {
+  const Covered dump(72);
+  const std::string path = dump.written();
+  FilterRequest request = default_run();
+  const run::MemoryEstimate all = run::filter_dump(run::Dump(path), request).memory;
+  request.layers.alpha = false;
+  const run::MemoryEstimate none = run::filter_dump(run::Dump(path), request).memory;
+  CHECK(all.block == none.block + 200 * sizeof(float));
+  CHECK(all.filter == none.filter);
+  CHECK(all.pictures - none.pictures == 200 * (run::CameraPictures::kBytesOfSumsOfAlpha +
+                                               run::CameraPictures::kBytesToWriteOfAlpha));
+}
+
 TEST_CASE("A layer of the light called background is refused beside alpha alone") {
   Covered dump(70);
   dump.options_.more = {{"unfiltered.background", &dump.set_.unfiltered}};
