@@ -121,6 +121,12 @@ typedef struct pvb_channel {
 #define PVB_DIRECTION {"direction", PVB_F32, 3, PVB_PLAIN}          // unit, toward the camera
 #define PVB_MATERIAL {"material", PVB_U32, 1, PVB_PLAIN}            // a number a material
 #define PVB_ROUGHNESS {"roughness", PVB_F32, 1, PVB_PLAIN}          // in [0, 1]
+#define PVB_FILM {"film", PVB_F32, 2, PVB_PLAIN}                    // pixels, y down
+#define PVB_LENS {"lens", PVB_F32, 2, PVB_PLAIN}                    // of the unit disk
+#define PVB_TIME {"time", PVB_F32, 1, PVB_PLAIN}                    // in [0, 1], of the shutter
+#define PVB_FRAME {"frame", PVB_U32, 1, PVB_PLAIN}
+#define PVB_ALPHA {"alpha", PVB_F32, 1, PVB_PLAIN}                  // coverage: 0 background
+#define PVB_KIND {"kind", PVB_U8, 1, PVB_PLAIN}                     // 0 surface 1 curve 2 volume
 
 // Of the tables `vertices` and `photons`, what is not among those above. README.md, "Tables", has
 // the exact meaning of each there, and says which are required.
@@ -130,7 +136,6 @@ typedef struct pvb_channel {
 #define PVB_DIRECT {"direct", PVB_F32, 3, PVB_PLAIN}                // radiance toward the parent
 #define PVB_BACKGROUND {"background", PVB_F32, 3, PVB_PLAIN}        // radiance along `outgoing`
 #define PVB_DEPTH {"depth", PVB_U16, 1, PVB_PLAIN}                  // vertices before, on the path
-#define PVB_KIND {"kind", PVB_U8, 1, PVB_PLAIN}                     // its values are below
 #define PVB_OUTGOING {"outgoing", PVB_F32, 3, PVB_PLAIN}            // unit, where the path goes on
 #define PVB_PDF {"pdf", PVB_F32, 1, PVB_PLAIN}                      // of `outgoing`, a solid angle
 #define PVB_LOBE {"lobe", PVB_U8, 1, PVB_PLAIN}                     // its values are below

@@ -131,7 +131,9 @@ OPTIONAL_CHANNELS = (Channel("unfiltered", "f32", 3), Channel("flags", "u8"),
                      Channel("normal", "f32", 3), Channel("reflectance", "f32", 3),
                      Channel("camera", "u16"), Channel("visibility", "u32"),
                      Channel("hit_distance", "f32"), Channel("direction", "f32", 3),
-                     Channel("material", "u32"), Channel("roughness", "f32"))
+                     Channel("material", "u32"), Channel("roughness", "f32"),
+                     Channel("film", "f32", 2), Channel("lens", "f32", 2), Channel("time", "f32"),
+                     Channel("frame", "u32"), Channel("alpha", "f32"), Channel("kind", "u8"))
 
 
 STANDARD = {  # the required channels of a table, and the others

@@ -19,7 +19,7 @@ struct ChannelInfo {
   std::string_view symbol;  // of path space filtering, "" where it has none
 };
 
-inline constexpr std::array<ChannelInfo, 15> kChannels = {{
+inline constexpr std::array<ChannelInfo, 21> kChannels = {{
     {"position", Type::f32, 3, true, "world", "x_i"},
     {"throughput", Type::f32, 3, true, "", "alpha_i"},
     {"contribution", Type::f32, 3, true, "radiance", "c_i"},
@@ -35,6 +35,12 @@ inline constexpr std::array<ChannelInfo, 15> kChannels = {{
     {"direction", Type::f32, 3, false, "", "omega_i"},
     {"material", Type::u32, 1, false, "", ""},
     {"roughness", Type::f32, 1, false, "", "q_i"},
+    {"film", Type::f32, 2, false, "", ""},
+    {"lens", Type::f32, 2, false, "", ""},
+    {"time", Type::f32, 1, false, "", ""},
+    {"frame", Type::u32, 1, false, "", ""},
+    {"alpha", Type::f32, 1, false, "", ""},
+    {"kind", Type::u8, 1, false, "", ""},
 }};
 
 // The row of a channel; null where the name means nothing to version 1.

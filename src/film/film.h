@@ -20,8 +20,10 @@ class Film {
   // Adds a path with the colour of its first part. `pixel`: y * width + x, row 0 at the top.
   void add(std::uint32_t pixel, const Rgb& radiance) {
     add_part(0, pixel, radiance);
-    ++count_[pixel];
+    count(pixel);
   }
+  // Counts a path that add() does not.
+  void count(std::uint32_t pixel) { ++count_[pixel]; }
   // Adds another part of a path.
   void add_part(std::size_t part, std::uint32_t pixel, const Rgb& radiance) {
     double* sum = &sum_[3 * (part * count_.size() + pixel)];

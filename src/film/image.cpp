@@ -1,11 +1,13 @@
 #include "film/image.h"
 
+#include <algorithm>
 #include <cassert>
 #include <filesystem>
 
 #include "core/error.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
+#include "film/light_layers.h"
 
 namespace psf::film {
 
@@ -43,6 +45,22 @@ std::vector<Rgb> Image::rgb(const std::string& prefix) const {
     result[i] = Rgb((*planes[0])[i], (*planes[1])[i], (*planes[2])[i]);
   }
   return result;
+}
+
+bool Image::has_background(const std::string& prefix) const {
+  const auto is_apart = [](const auto& attribute) {
+    return attribute.first == kBackgroundIs && attribute.second == kApart;
+  };
+  return std::any_of(attributes.begin(), attributes.end(), is_apart) &&
+         find(prefix + kBackground + ".R") != nullptr;
+}
+
+std::vector<Rgb> Image::seen(const std::string& prefix) const {
+  std::vector<Rgb> colors = rgb(prefix);
+  if (!has_background(prefix)) return colors;
+  const std::vector<Rgb> background = rgb(prefix + kBackground + ".");
+  for (std::size_t i = 0; i < colors.size(); ++i) colors[i] += background[i];
+  return colors;
 }
 
 void check_image_path(const std::string& path) {

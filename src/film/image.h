@@ -32,6 +32,11 @@ struct Image {
   // The colours of the channels R, G and B behind `prefix`, (height, width). Throws
   // Error{bad_input} naming the file and the channel where one is missing.
   [[nodiscard]] std::vector<Rgb> rgb(const std::string& prefix = "") const;
+  // Whether the background of the colours behind `prefix` is kept apart from them (kBackgroundIs),
+  // as the layer `background` behind it.
+  [[nodiscard]] bool has_background(const std::string& prefix = "") const;
+  // These colours with their background where it is kept apart: what a picture without alpha has.
+  [[nodiscard]] std::vector<Rgb> seen(const std::string& prefix = "") const;
 };
 
 // Writes an EXR of one part: scan lines of float32, ZIP compressed on all threads. The bytes are
@@ -42,8 +47,8 @@ void write_exr(const std::string& path, const Image& image);
 // other programs. Throws what check_part() throws and Error{bad_input}.
 [[nodiscard]] Image read_exr(const std::string& path);
 
-// Writes the channels R, G and B as an 8-bit PNG: times 2^exposure, through tone_map() and
-// srgb_from_linear() of display.h.
+// Writes the channels R, G and B, with the background that is kept apart from them, as an 8-bit PNG:
+// times 2^exposure, through tone_map() and srgb_from_linear() of display.h.
 void write_png(const std::string& path, const Image& image, float exposure = 0);
 // The bytes of the file that write_png() writes.
 [[nodiscard]] std::vector<std::uint8_t> encode_png(const Image& image, float exposure = 0);

@@ -13,9 +13,15 @@ namespace psf::film {
 inline constexpr const char* kLightLayers = "psf:light-layers";
 inline constexpr const char* kUnfiltered = "unfiltered-input";
 
-// The other layers of a picture of psf filter.
-inline constexpr std::array<std::string_view, 5> kOtherLayers = {kUnfiltered, "neighbors", "radius",
-                                                                 "albedo", "normal"};
+// The layer of the light of the background, and the attribute of a picture that keeps it apart: its
+// R, G, B are premultiplied by its A and lack the background, which Image::seen() adds.
+inline constexpr const char* kBackground = "background";
+inline constexpr const char* kBackgroundIs = "psf:background";
+inline constexpr const char* kApart = "apart";
+
+// The other layers of a picture of psf filter; `alpha` is A and the background.
+inline constexpr std::array<std::string_view, 6> kOtherLayers = {kUnfiltered, "neighbors", "radius",
+                                                                 "albedo",    "normal",    "alpha"};
 
 // Why a layer of the light cannot have this name; empty where it can. Lists of layers have commas,
 // weights an equals sign, and `all` and `none` are lists.

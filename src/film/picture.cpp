@@ -19,6 +19,7 @@
 #include "core/lower.h"
 #include "film/exr_check.h"
 #include "film/exr_layers.h"
+#include "film/light_layers.h"
 
 namespace psf::film {
 namespace {
@@ -119,6 +120,18 @@ Pixels read_chroma(const std::string& path, const ExrLayer& layer) {
   return pixels;
 }
 
+// The layer of the background of this one, where a picture of ours keeps it apart; else null.
+const ExrLayer* background_of(const Imf::Header& header, const ExrLayer& layer,
+                              const std::vector<ExrLayer>& layers) {
+  const auto* is = header.findTypedAttribute<Imf::StringAttribute>(kBackgroundIs);
+  if (is == nullptr || is->value() != kApart || layer.kind != LayerKind::color) return nullptr;
+  const std::string prefix = (layer.prefix.empty() ? "" : layer.prefix + ".") + kBackground;
+  const auto found = std::find_if(layers.begin(), layers.end(), [&](const ExrLayer& other) {
+    return other.part == layer.part && other.prefix == prefix && other.kind == LayerKind::color;
+  });
+  return found == layers.end() ? nullptr : &*found;
+}
+
 void apply_alpha(const Imf::Header& header, Pixels& pixels, Picture& picture) {
   if (pixels.alpha.empty()) return;
   const bool unassociated = number_of(header, "oiio:UnassociatedAlpha", 0) != 0;
@@ -186,8 +199,9 @@ Picture read(const std::string& path, const PictureRequest& request) {
       parts.back().channels.emplace_back(at.name());
     }
   }
+  const std::vector<ExrLayer> layers = exr_layers(parts);
   const ExrLayer layer =
-      choose_layer(path, exr_layers(parts), request.layer, request.fallback, request.parameter);
+      choose_layer(path, layers, request.layer, request.fallback, request.parameter);
   const auto part = static_cast<int>(layer.part);
   const Imf::Header& header = file.header(part);
   check_part(path, header);
@@ -204,6 +218,11 @@ Picture read(const std::string& path, const PictureRequest& request) {
   Imf::InputPart input(file, part);
   Pixels pixels =
       layer.kind == LayerKind::chroma ? read_chroma(path, layer) : read_plain(path, input, layer);
+  if (const ExrLayer* background = background_of(header, layer, layers)) {
+    const Pixels behind = read_plain(path, input, *background);
+    for (std::size_t i = 0; i < behind.colors.size(); ++i) pixels.colors[i] += behind.colors[i];
+    pixels.alpha.clear();  // nothing is transparent before its background
+  }
   apply_alpha(header, pixels, picture);
   place(header.displayWindow(), std::move(pixels), picture);
   if (request.layer.empty() && !layer.name.empty()) {

@@ -30,7 +30,8 @@ struct PictureRequest {
 };
 
 // Reads scan lines, tiles (the full picture of a mipmap), one part of several, float, half and
-// whole numbers, and luminance-chroma. Colours are premultiplied, as EXR stores them. Throws what
+// whole numbers, and luminance-chroma. Colours are premultiplied, as EXR stores them;
+// the background that a picture of ours keeps apart (light_layers.h) is added to them. Throws what
 // check_exr(), check_part() and choose_layer() throw, and Error{bad_input} where the file is
 // damaged or incomplete or has what is not supported: subsampled colours, an orientation, or
 // colours that are not linear.

@@ -14,7 +14,7 @@ namespace {
 
 // (height, width, 3) sRGB.
 std::vector<std::uint8_t> displayed(const Image& image, float exposure) {
-  const std::vector<Rgb> colors = image.rgb();
+  const std::vector<Rgb> colors = image.seen();
   const float scale = std::exp2(exposure);
   std::vector<std::uint8_t> bytes;
   bytes.reserve(3 * colors.size());

@@ -57,6 +57,16 @@ void weigh(Image& image, const std::string& prefix, const std::vector<std::strin
   }
 }
 
+void weigh_background(Image& image, const std::string& prefix, const LightWeights& weights) {
+  const auto given = weights.find(kBackground);
+  if (given == weights.end() || !image.has_background(prefix)) return;
+  for (int c = 0; c < 3; ++c) {
+    for (float& value : channel_of(image, prefix + kBackground + "." + kColours[c])) {
+      value *= given->second[c];
+    }
+  }
+}
+
 std::string text_of(const LightWeights& weights) {
   std::vector<std::string> texts;
   for (const auto& [layer, weight] : weights) {
@@ -78,16 +88,18 @@ std::vector<std::string> light_layers_of(const Image& image) {
 
 Image relight(const Image& image, const LightWeights& weights) {
   const std::vector<std::string> layers = light_layers_of(image);
-  if (layers.empty()) {
+  std::vector<std::string> names = layers;
+  if (image.has_background()) names.emplace_back(kBackground);
+  if (names.empty()) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("{}: has no layers of the light; psf-render --layers lights writes "
                             "them into a dump, and psf filter into the picture",
                             image.path));
   }
   for (const auto& [layer, weight] : weights) {
-    if (std::find(layers.begin(), layers.end(), layer) != layers.end()) continue;
+    if (std::find(names.begin(), names.end(), layer) != names.end()) continue;
     throw Error(ErrorCode::usage, fmt::format("{}: has no layer {} of the light; there are {}",
-                                              image.path, layer, fmt::join(layers, ", ")));
+                                              image.path, layer, fmt::join(names, ", ")));
   }
   for (const auto& [layer, weight] : weights) {
     if (is_finite(weight)) continue;
@@ -95,10 +107,13 @@ Image relight(const Image& image, const LightWeights& weights) {
                 fmt::format("{}: the weight of layer {} is not finite", image.path, layer));
   }
   Image result = image;
-  weigh(result, "", layers, weights);
   const std::string unfiltered = std::string(kUnfiltered) + ".";
-  if (result.find(unfiltered + layers.front() + ".R") != nullptr) {
-    weigh(result, unfiltered, layers, weights);
+  for (const std::string& prefix : {std::string(), unfiltered}) {
+    const bool has_layers =
+        !layers.empty() &&
+        (prefix.empty() || result.find(prefix + layers.front() + ".R") != nullptr);
+    if (has_layers) weigh(result, prefix, layers, weights);
+    weigh_background(result, prefix, weights);
   }
   const auto before =
       std::find_if(result.attributes.begin(), result.attributes.end(),

@@ -20,8 +20,9 @@ using LightWeights = std::map<std::string, Rgb>;
 // The picture with the layers times their weights, and R, G, B what their light then is; light that
 // is in no layer stays. The result is such a picture again; so is what it has of the layers in
 // unfiltered-input. Other channels, and layers that `weights` does not name, stay. The attribute
-// psf:relight says the weights, after those of the relights before; attributes are in order. Throws
-// Error{bad_input} naming the file where it has no layers of the light or a channel of one is
+// psf:relight says the weights, after those of the relights before; attributes are in order. The
+// background that a picture keeps apart (light_layers.h) may be weighed by its name, too: it stays
+// apart. Throws Error{bad_input} naming the file where it has neither, or a channel of one is
 // missing, and Error{usage} for a layer that is none of them or a weight that is not finite.
 [[nodiscard]] Image relight(const Image& image, const LightWeights& weights);
 

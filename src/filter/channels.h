@@ -1,6 +1,6 @@
 // The channels that the filter looks at: each by its name in files and as the member of that name
-// of Records, of run::BlockRecords and of run::ChannelSet. What loops over all channels, loops
-// here.
+// of Records, of run::BlockRecords and of run::ChannelSet. That of `alpha` is called `coverage`,
+// since alpha_i is the throughput. What loops over all channels, loops here.
 #pragma once
 
 #include <string_view>
@@ -40,6 +40,8 @@ void for_each_channel(const Visit& visit) {
       "material", [](auto& of) -> auto& { return of.material; });
   visit(
       "roughness", [](auto& of) -> auto& { return of.roughness; });
+  visit(
+      "alpha", [](auto& of) -> auto& { return of.coverage; });
 }
 
 // Whether records have the channel of this name.

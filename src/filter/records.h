@@ -37,8 +37,9 @@ struct Records {
   std::span<const float> hit_distance;        // h_i, of the first ray from x_i; infinity: a miss
   std::span<const Vec3> direction;            // omega_i, unit, toward the camera
   std::span<const std::uint32_t> material;
-  std::span<const float> roughness;    // q_i, perceptual, of the smoothest lobe; 1: diffuse
-  std::span<const Layer> layers = {};  // averaged beside c_i, with the same weights
+  std::span<const float> roughness;      // q_i, perceptual, of the smoothest lobe; 1: diffuse
+  std::span<const float> coverage = {};  // 0: the path is of the background; for pictures
+  std::span<const Layer> layers = {};    // averaged beside c_i, with the same weights
 
   [[nodiscard]] std::size_t size() const { return flags.size(); }
 };

@@ -46,7 +46,7 @@ Picture to_picture(film::Image image, const std::string& camera) {
 }
 
 std::vector<Rgb> colors_of(const Picture& picture) {
-  return to_image(picture).rgb();
+  return to_image(picture).seen();
 }
 
 const std::vector<float>& Picture::layer(std::string_view name) const {

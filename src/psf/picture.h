@@ -30,10 +30,12 @@ struct PSF_API Picture {
 
   // The values of a layer. Throws Error{bad_input} where there is none of this name.
   [[nodiscard]] const std::vector<float>& layer(std::string_view name) const;
-  // The colours of the layers R, G and B behind `prefix`, (height, width, 3), linear. Throws
-  // Error{bad_input} where they are not there.
+  // The colours of the layers R, G and B behind `prefix`, (height, width, 3), linear. Where a dump
+  // has alpha they are premultiplied by the layer A, and its background is apart, behind
+  // prefix + "background.". Throws Error{bad_input} where they are not there.
   [[nodiscard]] std::vector<float> rgb(const std::string& prefix = "") const;
-  // The bytes of a PNG to look at: times 2^exposure, tone-mapped; those of save() at exposure 0.
+  // The bytes of a PNG to look at: times 2^exposure, tone-mapped; those of save() at exposure 0. A
+  // background that is kept apart is in it.
   [[nodiscard]] std::vector<unsigned char> png(float exposure = 0) const;
 
   // The names of the layers of the light; none where it has none, as what read() gives.
@@ -46,12 +48,13 @@ struct PSF_API Picture {
   // Writes an EXR with all layers and attributes, or a PNG to look at, by the extension. The file
   // appears whole or not at all. Throws Error{io}, Error{usage} for another extension.
   void save(const std::string& path) const;
-  // Reads the colours of an EXR: its root or the layer of this name. Throws Error{io},
-  // Error{bad_input}.
+  // Reads the colours of an EXR, with a background that is kept apart from them: its root or the
+  // layer of this name. Throws Error{io}, Error{bad_input}.
   [[nodiscard]] static Picture read(const std::string& path, const std::string& layer = "");
 
   // The error against a reference of the same size by a metric of metric_names(), upper or lower
-  // case, as psf compare gives it. Throws Error{usage}, Error{bad_input} for another size.
+  // case, as psf compare gives it: with the background that either keeps apart. Throws
+  // Error{usage}, Error{bad_input} for another size.
   [[nodiscard]] double error(const Picture& reference, std::string_view metric = "relMSE") const;
 };
 

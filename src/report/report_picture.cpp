@@ -51,7 +51,7 @@ std::string base64(const std::string& bytes) {
 }  // namespace
 
 EncodedPicture encode_picture(const film::Image& image) {
-  const std::vector<Rgb> colors = image.rgb();
+  const std::vector<Rgb> colors = image.seen();
   const std::size_t count = 3 * colors.size();
   std::vector<std::uint8_t> bytes(2 * count);
   std::size_t at = 0;

@@ -35,7 +35,7 @@ void BlockLoop::visit(std::uint64_t k, const Visitor& visit) {
   std::uint64_t not_finite = 0;
   for (const BlockRecords::LayerColumns& layer : read.layers) not_finite += layer.not_finite;
   const filter::Block block = describe_block(dump_, *blocks_, k, count_);
-  visit({k, (*blocks_)[k], records, block, not_finite});
+  visit({k, (*blocks_)[k], records, block, not_finite, read.not_finite_coverage});
 }
 
 }  // namespace psf::run

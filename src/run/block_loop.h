@@ -21,6 +21,7 @@ class BlockLoop {
     const filter::Records& records;
     const filter::Block& block;
     std::uint64_t not_finite_in_layers;  // values of layers of the light that were made 0
+    std::uint64_t not_finite_coverage;   // values of alpha that were made 1
   };
   using Visitor = std::function<void(const Visit&)>;
 

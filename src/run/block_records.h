@@ -25,6 +25,8 @@ struct BlockRecords {
   std::vector<Vec3> direction;
   std::vector<std::uint32_t> material;
   std::vector<float> roughness;
+  std::vector<float> coverage;
+  std::uint64_t not_finite_coverage = 0;  // values that are 1 in place of what the file has
   // The columns of the layers, and the views of them that view() gives out.
   struct LayerColumns {
     std::vector<Rgb> contribution, unfiltered;

@@ -57,6 +57,16 @@ void make_finite(BlockRecords::LayerColumns& layer) {
   }
 }
 
+// What of alpha is not finite counts as covered.
+void make_finite(std::vector<float>& coverage, std::uint64_t& not_finite) {
+  not_finite = 0;
+  for (float& value : coverage) {
+    if (std::isfinite(value)) continue;
+    value = 1;
+    ++not_finite;
+  }
+}
+
 }  // namespace
 
 Dump::Dump(const std::string& path, const std::optional<VertexRule>& rule)
@@ -197,6 +207,7 @@ void Dump::read(const filter::PathRange& range, const ChannelSet& channels,
   core::parallel_for(tasks.size(), 1, [&](std::size_t begin, std::size_t) { tasks[begin](); });
   core::parallel_for(out.layers.size(), 1,
                      [&](std::size_t begin, std::size_t) { make_finite(out.layers[begin]); });
+  make_finite(out.coverage, out.not_finite_coverage);
   out.layer_views.clear();
   for (const BlockRecords::LayerColumns& layer : out.layers) {
     out.layer_views.push_back({layer.contribution, layer.unfiltered});

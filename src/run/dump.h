@@ -21,7 +21,8 @@ namespace psf::run {
 // u is 0, without `camera` every path belongs to camera 0.
 struct ChannelSet {
   std::optional<std::size_t> flags, position, distance, throughput, contribution, unfiltered, pixel,
-      camera, normal, reflectance, visibility, hit_distance, direction, material, roughness;
+      camera, normal, reflectance, visibility, hit_distance, direction, material, roughness,
+      coverage;
   std::vector<LightLayer> layers;
 };
 
@@ -52,14 +53,16 @@ class Dump {
   // what needs it.
   [[nodiscard]] ChannelSet select(const filter::Parameters& parameters, bool guides) const;
 
+  // The place of a channel of formats::kChannels, which has its type; not set where the file has
+  // none of this name. Throws Error{bad_input} where it has another type.
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view channel) const;
+
   // Reads the paths [range.first, range.last), columns in parallel. What of a layer of the light is
-  // not finite is 0, and counted. Throws Error{bad_input} that
-  // names a record whose pixel or camera does not exist. Thread-safe.
+  // not finite is 0, of alpha 1, and counted. Throws Error{bad_input} that names a record whose
+  // pixel or camera does not exist. Thread-safe.
   void read(const filter::PathRange& range, const ChannelSet& channels, BlockRecords& out) const;
 
  private:
-  // Channels of formats::kChannels, of their type.
-  [[nodiscard]] std::optional<std::size_t> find(std::string_view channel) const;
   [[nodiscard]] std::size_t require(std::string_view channel, std::string_view wanted_by,
                                     std::string_view instead = {}) const;
   void set_pass_bounds();

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/seconds.h"
+#include "film/light_layers.h"
 #include "filter/estimate.h"
 #include "filter/radius.h"
 #include "run/block_loop.h"
@@ -57,7 +58,21 @@ class DumpFilter {
                       ": its layers of the light are those of the renderer's vertex; --layers none "
                       "does without them");
     }
+    if (run.layers.alpha) channels.coverage = dump.find("alpha");
+    if (channels.coverage) check_no_background(dump, channels.layers);
     return channels;
+  }
+
+  // A picture has one layer of a name.
+  static void check_no_background(const Dump& dump, const std::vector<LightLayer>& layers) {
+    for (const LightLayer& layer : layers) {
+      if (layer.name != film::kBackground) continue;
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("{}: has a layer {} of the light and the channel alpha, with which "
+                              "pictures have another layer of this name; psf cat --drop alpha "
+                              "leaves that out, --layers one of them",
+                              dump.reader().path(), layer.name));
+    }
   }
 
   void make_pictures() {
@@ -66,6 +81,7 @@ class DumpFilter {
     for (const LightLayer& layer : blocks_.channels().layers) layers.light->push_back(layer.name);
     layers.albedo = layers.albedo && blocks_.channels().reflectance.has_value();
     layers.normal = layers.normal && blocks_.channels().normal.has_value();
+    layers.alpha = layers.alpha && blocks_.channels().coverage.has_value();
     for (const filter::CameraView& camera : dump_.cameras()) {
       outcome_.pictures.emplace_back(camera, layers);
       if (run_.with_noise) outcome_.noise.emplace_back(camera);
@@ -74,11 +90,14 @@ class DumpFilter {
 
   void set_last(std::size_t last) {
     const std::uint64_t layers = blocks_.channels().layers.size();
+    const bool alpha = blocks_.channels().coverage.has_value();
     const std::uint64_t sums = CameraPictures::kBytesOfSums +
                                layers * CameraPictures::kBytesOfSumsALayer +
+                               (alpha ? CameraPictures::kBytesOfSumsOfAlpha : 0) +
                                (run_.with_noise ? NoiseMoments::kBytesAPixel : 0);
-    const std::uint64_t writing =
-        CameraPictures::kBytesToWrite + layers * CameraPictures::kBytesToWriteALayer;
+    const std::uint64_t writing = CameraPictures::kBytesToWrite +
+                                  layers * CameraPictures::kBytesToWriteALayer +
+                                  (alpha ? CameraPictures::kBytesToWriteOfAlpha : 0);
     outcome_.memory =
         plan_memory(dump_, blocks_.channels(),
                     {run_.parameters, first_, last, run_.max_memory, copies_ * sums + writing});
@@ -97,6 +116,7 @@ class DumpFilter {
     });
     outcome_.statistics += estimates.statistics;
     outcome_.not_finite_in_layers += visit.not_finite_in_layers;
+    outcome_.not_finite_coverage += visit.not_finite_coverage;
     add_to_pictures(visit.paths, visit.records, estimates);
     if (run_.on_progress) {
       run_.on_progress(visit.paths.last - blocks_.all().first, blocks_.all().size());

@@ -40,6 +40,7 @@ struct FilterResult {
   filter::Statistics statistics;
   std::uint64_t passes = 0, blocks = 0;
   std::uint64_t not_finite_in_layers = 0;  // values of layers of the light that count as 0
+  std::uint64_t not_finite_coverage = 0;   // values of alpha that count as 1
   std::uint64_t overflows = 0;             // paths left out because their radiance overflows
   double seconds_read = 0;  // time spent waiting for the reader, which works beside the filter
   double seconds_film = 0;  // time spent adding up pictures

@@ -68,12 +68,13 @@ std::uint64_t keep(const Records& records, const Estimates& estimates,
 
 CameraPictures::CameraPictures(const filter::CameraView& camera, const PictureLayers& layers)
     : layer_names_(layers.light.value_or(std::vector<std::string>())),
-      filtered_(camera.width, camera.height, 1 + layer_names_.size()),
-      unfiltered_(camera.width, camera.height, 1 + layer_names_.size()),
+      filtered_(camera.width, camera.height, 1 + layer_names_.size() + (layers.alpha ? 1 : 0)),
+      unfiltered_(camera.width, camera.height, 1 + layer_names_.size() + (layers.alpha ? 1 : 0)),
       details_(camera.width, camera.height),
       layers_(layers),
       albedo_(layers.albedo ? camera.width : 0, layers.albedo ? camera.height : 0),
-      normal_(layers.normal ? camera.width : 0, layers.normal ? camera.height : 0) {}
+      normal_(layers.normal ? camera.width : 0, layers.normal ? camera.height : 0),
+      alpha_(layers.alpha ? camera.width : 0, layers.alpha ? camera.height : 0) {}
 
 void CameraPictures::add(const Records& records, const Estimates& estimates,
                          std::span<const float> radius, std::size_t i) {
@@ -81,8 +82,13 @@ void CameraPictures::add(const Records& records, const Estimates& estimates,
   const std::uint32_t pixel = records.pixel[i];
   const Radiance radiance =
       radiance_of(whole_of(records, estimates), records.throughput[i], role, i);
-  filtered_.add(pixel, radiance.filtered);
-  if (filter::is_input(role)) unfiltered_.add(pixel, radiance.input);
+  const std::size_t part = is_background(records, i) ? 1 + layer_names_.size() : 0;
+  filtered_.count(pixel);
+  filtered_.add_part(part, pixel, radiance.filtered);
+  if (filter::is_input(role)) {
+    unfiltered_.count(pixel);
+    unfiltered_.add_part(part, pixel, radiance.input);
+  }
   const bool vertex = filter::is_query(role);
   if (vertex) {
     const float r_i = estimates.radius.empty() ? radius[i] : estimates.radius[i];
@@ -93,6 +99,7 @@ void CameraPictures::add(const Records& records, const Estimates& estimates,
 
 void CameraPictures::add_layer(std::size_t k, const Records& records, const Estimates& estimates,
                                std::size_t i) {
+  if (is_background(records, i)) return;  // it is in the background as a whole
   const Role role = estimates.roles[i];
   const std::uint32_t pixel = records.pixel[i];
   const Radiance radiance =
@@ -111,6 +118,7 @@ void CameraPictures::add_guides(const filter::Records& records, std::size_t i, b
     const Vec3 normal = vertex ? records.normal[i] : Vec3(0, 0, 0);
     if (is_finite(normal)) normal_.add(records.pixel[i], Rgb(normal.x, normal.y, normal.z));
   }
+  if (layers_.alpha) alpha_.add(records.pixel[i], Rgb(records.coverage[i], 0, 0));
 }
 
 std::vector<float> CameraPictures::filled(std::size_t part) const {
@@ -148,6 +156,10 @@ film::Image CameraPictures::image() const {
     prefixes.push_back(name + ".");
   }
   if (!names.empty()) image.attributes.emplace_back(film::kLightLayers, names);
+  if (layers_.alpha) {
+    prefixes.push_back(film::kBackground + std::string("."));
+    image.attributes.emplace_back(film::kBackgroundIs, film::kApart);
+  }
   struct Plane {
     std::string channel;
     const film::Film* film;
@@ -173,6 +185,7 @@ film::Image CameraPictures::image() const {
   if (layers_.radius) add("radius.", "Y", details_, 1);
   if (layers_.albedo) add("albedo.", "RGB", albedo_);
   if (layers_.normal) add("normal.", "XYZ", normal_);
+  if (layers_.alpha) add("", "A", alpha_);
   image.layers.resize(planes.size());
   core::parallel_for(planes.size(), 1, [&](std::size_t k, std::size_t) {
     image.layers[k] = {planes[k].channel, planes[k].film->mean(planes[k].component)};

@@ -20,11 +20,12 @@ namespace psf::run {
 struct PictureLayers {
   bool unfiltered = true, neighbors = true, radius = true;
   bool albedo = true, normal = true;  // where the dump has the channels
+  bool alpha = true;                  // the same: A, and the background apart
   // The layers of the light, by name; not set: all that the dump has.
   std::optional<std::vector<std::string>> light = {};
 
   [[nodiscard]] static PictureLayers none() {
-    return {false, false, false, false, false, std::vector<std::string>()};
+    return {false, false, false, false, false, false, std::vector<std::string>()};
   }
 };
 
@@ -45,32 +46,44 @@ class CameraPictures {
   // unfiltered-input.R/G/B, over the paths for which is_input() is true, filled as in
   // film::Film::filled_mean() where a pixel has no such path; neighbors.Y and radius.Y, means over
   // the paths with a vertex; albedo.R/G/B and normal.X/Y/Z, where paths without vertex count as 0.
+  // With PictureLayers::alpha: A, the mean coverage; the light of paths whose coverage is 0 is then
+  // in none of the colours but in background.R/G/B and unfiltered-input.background.R/G/B
+  // (film::kBackgroundIs).
   // Of each layer of the light what there is of the whole: NAME.R/G/B, and unfiltered-input.NAME;
   // the attribute film::kLightLayers has their names.
   [[nodiscard]] film::Image image() const;
 
+  [[nodiscard]] bool has_alpha() const { return layers_.alpha; }
   [[nodiscard]] const std::vector<std::string>& light_layers() const { return layer_names_; }
   // How far the layers of the light are from adding up to the filtered picture: the differences, as
   // a share of its light; 0 where there are none.
   [[nodiscard]] double light_beside_layers() const;
 
   // The bytes per pixel of the sums, and those that image() and writing it take temporarily; of
-  // each layer of the light beside.
+  // alpha and of each layer of the light beside.
   static constexpr std::uint64_t kBytesOfFilm = 3 * sizeof(double) + sizeof(std::uint64_t);
   static constexpr std::uint64_t kBytesOfSums = 5 * kBytesOfFilm;
   static constexpr std::uint64_t kBytesToWrite = sizeof(float) * 2 * 14;
+  static constexpr std::uint64_t kBytesOfSumsOfAlpha = kBytesOfFilm + sizeof(double) * 2 * 3;
+  static constexpr std::uint64_t kBytesToWriteOfAlpha = sizeof(float) * 2 * 7;
   static constexpr std::uint64_t kBytesOfSumsALayer = sizeof(double) * 2 * 3;
   static constexpr std::uint64_t kBytesToWriteALayer = sizeof(float) * 2 * 6;
 
  private:
   [[nodiscard]] std::vector<float> filled(std::size_t part) const;
+  // Whether record i is of a background that is kept apart.
+  [[nodiscard]] bool is_background(const filter::Records& records, std::size_t i) const {
+    return layers_.alpha && records.coverage[i] == 0;
+  }
   void add_guides(const filter::Records& records, std::size_t i, bool vertex);
 
   std::vector<std::string> layer_names_;  // of the light
-  film::Film filtered_, unfiltered_;      // parts: the whole, then the layers
-  film::Film details_;                    // neighbours, radius, 0
+  // Parts: the whole, then the layers, then the background where it is kept apart.
+  film::Film filtered_, unfiltered_;
+  film::Film details_;  // neighbours, radius, 0
   PictureLayers layers_;
   film::Film albedo_, normal_;
+  film::Film alpha_;  // coverage, 0, 0
 };
 
 // Adds the records [first, last) of a filtered block to the pictures of their cameras. Threads

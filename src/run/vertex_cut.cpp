@@ -56,7 +56,7 @@ bool VertexCut::has(std::string_view channel) const {
   if (rule_.kind == VertexRule::Kind::first_rough) return true;
   if (channel == "hit_distance") return table_.schema().find("distance").has_value();
   if (channel == "throughput" || channel == "contribution" || channel == "unfiltered" ||
-      channel == "pixel" || channel == "camera" || channel == "flags") {
+      channel == "pixel" || channel == "camera" || channel == "flags" || channel == "alpha") {
     return true;
   }
   return channel != "visibility" && table_.schema().find(channel).has_value();

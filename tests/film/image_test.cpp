@@ -13,9 +13,12 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "film/display.h"
+#include "film/light_layers.h"
+#include "film/picture.h"
 #include "read_text.h"
 #include "temp_folder.h"
 
+using psf::Rgb;
 using psf::film::Image;
 using psf::tests::TempFolder;
 
@@ -144,6 +147,44 @@ TEST_CASE("a PNG is tone-mapped and sRGB") {
   std::vector<unsigned char> values(12);
   REQUIRE(input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, values.data()));
   CHECK(values == std::vector<unsigned char>{0, 0, 0, 188, 188, 188, 255, 255, 255, 0, 0, 127});
+}
+
+TEST_CASE("a background that is apart is shown and compared, and no other one is") {
+  const TempFolder folder;
+  Image image;
+  image.width = 2;
+  image.height = 1;
+  const std::vector<float> front = {0.25f, 0.5f, 0, 0, 0, 0}, behind = {0, 0, 0.125f, 0.5f, 1, 2},
+                           both = {0.25f, 0.5f, 0.125f, 0.5f, 1, 2};
+  image.add("", "RGB", both);
+  const std::vector<std::uint8_t> shown = psf::film::encode_png(image);
+  const std::vector<Rgb> colors = image.rgb();
+  image.layers.clear();
+  image.add("", "RGB", front);
+  image.add("", "A", std::vector<float>{0.5f, 0});
+  image.add("background.", "RGB", behind);
+  image.add("unfiltered-input.", "RGB", behind);
+  image.add("unfiltered-input.background.", "RGB", front);
+  psf::film::write_exr(folder / "other.exr", image);  // a layer of this name of another program
+  CHECK_FALSE(image.has_background());
+  CHECK(psf::film::encode_png(image) != shown);
+  const psf::film::Picture other = psf::film::read_picture(folder / "other.exr");
+  CHECK(other.colors == image.rgb());
+  CHECK(other.notes.size() == 1);
+  image.attributes = {{psf::film::kBackgroundIs, psf::film::kApart}};
+  psf::film::write_exr(folder / "apart.exr", image);
+  CHECK(image.seen() == colors);
+  CHECK(image.seen("unfiltered-input.") == colors);
+  CHECK(psf::film::encode_png(image) == shown);
+  CHECK(psf::film::encode_png(psf::film::read_exr(folder / "apart.exr")) == shown);
+  for (const char* layer : {"", "unfiltered-input"}) {
+    const psf::film::Picture apart = psf::film::read_picture(folder / "apart.exr", {layer, ""});
+    CHECK(apart.colors == colors);
+    CHECK(apart.notes.empty());
+  }
+  const psf::film::Picture alone =
+      psf::film::read_picture(folder / "apart.exr", {"background", ""});
+  CHECK(alone.colors == image.rgb("background."));
 }
 
 TEST_CASE("the tone curve rises and joins smoothly") {

@@ -126,5 +126,32 @@ TEST_CASE("What cannot be relit is an error that names the file and what there i
             .starts_with("lit.exr: has no layers of the light"));
 }
 
+TEST_CASE("A background that is apart is weighed by its name, and is in no other colour") {
+  Image image = lit();
+  for (const char* channel :
+       {"background.R", "background.G", "background.B", "unfiltered-input.background.R",
+        "unfiltered-input.background.G", "unfiltered-input.background.B"}) {
+    image.layers.push_back({channel, {6, 5, 4, 3, 2, 1}});
+  }
+  CHECK(message_of(image, {{"background", Rgb(2)}}, ErrorCode::usage).find("there are sun, sky") !=
+        std::string::npos);  // a layer of that name, not apart
+  image.attributes.emplace_back(film::kBackgroundIs, film::kApart);
+  const Image relit = film::relight(image, {{"background", Rgb(2, 0, 1)}, {"sun", Rgb(0)}});
+  for (const char* prefix : {"", "unfiltered-input."}) {
+    const std::string p = prefix;
+    CHECK(relit.rgb(p) == image.rgb(p + "sky."));
+    const auto before = image.rgb(p + "background."), after = relit.rgb(p + "background."),
+               seen = relit.seen(p), sky = image.rgb(p + "sky.");
+    for (std::size_t pixel = 0; pixel < 6; ++pixel) {
+      CHECK(after[pixel] == before[pixel] * Rgb(2, 0, 1));
+      CHECK(seen[pixel] == sky[pixel] + after[pixel]);
+    }
+  }
+  std::erase_if(image.attributes, [](const auto& one) { return one.first == film::kLightLayers; });
+  const Image dark = film::relight(image, {{"background", Rgb(0)}});
+  CHECK(dark.rgb() == image.rgb());
+  CHECK(dark.seen() == image.rgb());
+}
+
 }  // namespace
 }  // namespace psf

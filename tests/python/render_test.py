@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from support import CORNELL, PACKAGE, content, run
+from support import CORNELL, PACKAGE, SAMPLES, content, run
 
 import psf
 
@@ -73,6 +73,20 @@ class Render(unittest.TestCase):
             picture.relight(direct=(1, 2))
         with self.assertRaisesRegex(psf.Error, "has no layers of the light"):
             psf.read_picture(self.file("c.exr")).relight(direct=1)
+
+    def test_alpha_and_the_background_are_apart(self) -> None:
+        scene = os.path.join(SAMPLES, "fence.json")
+        view = dict(size=(20, 16), passes=2, eye=(6, 1.2, 9), target=(0, 1.2, 0), fov=50)
+        plain = psf.render(scene, self.file("a.pvb"), **view).filter()
+        picture = psf.render(scene, self.file("b.pvb"), channels="default,alpha", **view).filter()
+        self.assertIsNone(plain.alpha)
+        self.assertIsNone(plain.background)
+        alpha, background = picture.alpha, picture.background
+        assert alpha is not None and background is not None
+        self.assertEqual((alpha.shape, alpha.min(), alpha.max()), ((16, 20), 0, 1))
+        np.testing.assert_allclose(picture.rgb + background, plain.rgb, rtol=1e-6)
+        self.assertEqual(picture.png(), plain.png())
+        self.assertLess(picture.error(plain), 1e-12)
 
     def test_the_figures_are_named_as_those_of_the_command(self) -> None:
         run("psf-render", CORNELL, "--size", "4x4", "--passes", "1", "-o", self.file("c.pvb"),

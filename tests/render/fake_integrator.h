@@ -18,6 +18,7 @@ class FakeIntegrator : public render::Integrator {
     record.unfiltered = Rgb(u.x, 0.25f, 1);
     record.has_vertex = ray.direction.x > -0.2f;  // the picture's left has background alone
     if (!record.has_vertex) return record;
+    record.coverage = 1;
     record.shaded = shade;
     record.distance = 2 + u.y;
     record.position = ray.origin + ray.direction * record.distance;

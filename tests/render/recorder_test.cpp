@@ -35,7 +35,7 @@ float value(const Recorder& recorder, const std::string& channel, std::size_t i,
 
 }  // namespace
 
-TEST_CASE("all channels, or the ones asked for beside those that every file has") {
+TEST_CASE("the default channels, or the ones asked for beside those that every file has") {
   CHECK(record_channels().size() == 15);
   std::size_t bytes = 0;
   for (const auto& channel : record_channels()) bytes += channel.stride();
@@ -44,6 +44,11 @@ TEST_CASE("all channels, or the ones asked for beside those that every file has"
   CHECK(names(record_channels(wanted)) ==
         std::vector<std::string>{"position", "normal", "throughput", "contribution", "unfiltered",
                                  "distance", "pixel", "flags", "roughness"});
+  const std::vector<std::string> set{"default"}, more{"alpha", "default", "normal"}, all{"all"};
+  CHECK(names(record_channels(set)) == names(record_channels()));
+  CHECK(record_channels(more).size() == 16);
+  CHECK(record_channels(more).back().name == "alpha");
+  CHECK(record_channels(all).size() == 21);
   const std::vector<std::string> unknown{"normals"};
   CHECK_THROWS_AS(record_channels(unknown), Error);
 }
@@ -70,6 +75,34 @@ TEST_CASE("columns hold what was set, non-finite values included") {
   CHECK(value(recorder, "distance", 2, 0) == 22);
   CHECK(value(recorder, "hit_distance", 2, 0) == std::numeric_limits<float>::infinity());
   CHECK(value(recorder, "roughness", 2, 0) == 0.5f);
+}
+
+TEST_CASE("columns on request hold what was set, and take no room otherwise") {
+  const std::vector<std::string> wanted{"film", "lens", "time", "frame", "alpha", "kind"};
+  const auto channels = record_channels(wanted);
+  Recorder recorder(2, {}, channels);
+  PathRecord record;
+  record.coverage = 0.25f;
+  record.kind = VertexKind::volume;
+  recorder.set(1, 0, 0, record);
+  recorder.set_sample(1, {{1.5f, 2.5f}, {-0.5f, 0.75f}, 0.125f, 42});
+  const auto columns = recorder.columns(channels);
+  const auto at = [&]<class T>(const char* name, std::size_t k, T) {
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      if (channels[c].name == name) return static_cast<const T*>(columns[c])[k];
+    }
+    return T();
+  };
+  CHECK(at("film", 1, Vec2()) == Vec2(1.5f, 2.5f));
+  CHECK(at("lens", 1, Vec2()) == Vec2(-0.5f, 0.75f));
+  CHECK(at("time", 1, 0.0f) == 0.125f);
+  CHECK(at("frame", 1, 0u) == 42);
+  CHECK(at("alpha", 1, 0.0f) == 0.25f);
+  CHECK(at("kind", 1, std::uint8_t{0}) == 2);
+  Recorder plain(2);
+  plain.set(1, 0, 0, record);
+  plain.set_sample(1, {});
+  for (const void* column : plain.columns(record_channels())) CHECK(column != nullptr);
 }
 
 TEST_CASE("the picture gets u + alpha c, c only where there is a vertex, and no not-a-number") {
@@ -99,7 +132,8 @@ TEST_CASE("the picture gets u + alpha c, c only where there is a vertex, and no 
 }
 
 TEST_CASE("the recorder's channels are those of the format, of their type") {
-  const std::vector<formats::Channel> channels = record_channels();
+  const std::vector<std::string> all{"all"};
+  const std::vector<formats::Channel> channels = record_channels(all);
   CHECK(channels.size() == formats::kChannels.size());
   for (const formats::Channel& channel : channels) {
     INFO(channel.name);

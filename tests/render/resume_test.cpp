@@ -134,6 +134,7 @@ TEST_CASE("a file that was rendered otherwise is refused, named, and left as it 
   names([](RenderSettings& s) { s.producer = "psf-render 9"; }, "producer");
   names([](RenderSettings& s) { s.cameras = {1}; }, "cameras");
   names([](RenderSettings& s) { s.channels = {"normal"}; }, "channels:");
+  names([](RenderSettings& s) { s.channels = {"default", "alpha"}; }, "channels:");
   CHECK(std::filesystem::file_size(path) == size);
   CHECK(read_all(path) == before);
 }

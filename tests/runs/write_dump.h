@@ -23,6 +23,7 @@ struct DumpOptions {
   // Channels of three floats beside those of the records.
   std::vector<std::pair<std::string, const std::vector<Rgb>*>> more = {};
   std::uint8_t components_of_more = 3;
+  const std::vector<float>* alpha = nullptr;  // the channel of this name; null: none
 };
 
 inline void write_dump(const std::string& path, const RecordSet& set, const DumpOptions& options) {
@@ -70,6 +71,7 @@ inline void write_dump(const std::string& path, const RecordSet& set, const Dump
   add("direction", Type::f32, 3, set.direction.data());
   add("material", Type::u32, 1, set.material.data());
   add("roughness", Type::f32, 1, set.roughness.data());
+  if (options.alpha != nullptr) add("alpha", Type::f32, 1, options.alpha->data());
   for (const auto& [name, values] : options.more) {
     add(name, Type::f32, options.components_of_more, values->data());
   }

@@ -48,8 +48,8 @@ run::PictureLayers layers_of(const std::string& text) {
   run::PictureLayers layers = run::PictureLayers::none();
   if (text == "none") return layers;
   // In the order of film::kOtherLayers.
-  bool* const others[] = {&layers.unfiltered, &layers.neighbors, &layers.radius, &layers.albedo,
-                          &layers.normal};
+  bool* const others[] = {&layers.unfiltered, &layers.neighbors, &layers.radius,
+                          &layers.albedo,     &layers.normal,    &layers.alpha};
   std::vector<std::string>& light = *layers.light;
   for (const std::string& name : core::split(text, ',')) {
     const auto other = std::find(film::kOtherLayers.begin(), film::kOtherLayers.end(), name);
@@ -73,6 +73,7 @@ void check_layers(const run::Dump& dump, const std::string& text,
   };
   if (layers.albedo) need("albedo", "reflectance");
   if (layers.normal) need("normal", "normal");
+  if (layers.alpha) need("alpha", "alpha");
   std::vector<std::string> names(film::kOtherLayers.begin(), film::kOtherLayers.end());
   for (const std::string& name : run::light_layer_names(dump.reader())) names.push_back(name);
   for (const std::string& name : *layers.light) {
@@ -123,7 +124,8 @@ void add_filter_options(CLI::App& command, FilterOptions& options) {
   command
       .add_option("--layers", options.layers,
                   "of an .exr beside the picture: all, none, or some of unfiltered-input, "
-                  "neighbors, radius, albedo, normal, and the dump's layers of the light")
+                  "neighbors, radius, albedo, normal, alpha (with the background apart), and the "
+                  "dump's layers of the light")
       ->type_name("NAME,NAME,...")
       ->capture_default_str();
   const std::size_t before = command.get_options().size();

@@ -71,6 +71,19 @@ inline std::string layers_text(const FilterReport& report) {
   return text;
 }
 
+// What is said of alpha; empty: the pictures have none.
+inline std::string alpha_text(const FilterReport& report) {
+  const auto& pictures = report.outcome.pictures;
+  if (pictures.empty() || !pictures[0].has_alpha()) return "";
+  std::string text = "of the channel; the background is apart";
+  if (report.outcome.not_finite_coverage > 0) {
+    text +=
+        fmt::format("; {} not finite, which count as 1",
+                    core::counted(report.outcome.not_finite_coverage, "value is", "values are"));
+  }
+  return text;
+}
+
 inline void print_report(const FilterReport& report) {
   const filter::Statistics& s = report.outcome.statistics;
   const filter::Parameters& p = report.parameters;
@@ -90,6 +103,8 @@ inline void print_report(const FilterReport& report) {
   line("weights", weights_text(p));
   const std::string layers = layers_text(report);
   if (!layers.empty()) line("layers", layers);
+  const std::string alpha = alpha_text(report);
+  if (!alpha.empty()) line("alpha", alpha);
   const std::string in_the_ball =
       p.count_refusals && s.queries > 0
           ? fmt::format("; {:.1f} in the ball",

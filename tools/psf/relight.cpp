@@ -63,19 +63,21 @@ film::LightWeights weights_of(const std::vector<std::string>& texts) {
   return weights;
 }
 
-// The light of a picture or of a layer, negative light too.
-double light_of(const film::Image& image, const std::string& prefix) {
+// The light of colours, negative light too.
+double light_of(const std::vector<Rgb>& colors) {
   double sum = 0;
-  for (const Rgb& color : image.rgb(prefix)) sum += std::abs(double{luminance(color)});
+  for (const Rgb& color : colors) sum += std::abs(double{luminance(color)});
   return sum;
 }
 
-// The layers with their shares of the light that is written.
+// The layers, and the background that is apart, with their shares of the light that is seen.
 Json shares_of(const film::Image& image, const film::LightWeights& weights) {
   Json rows = Json::array();
-  const double all = light_of(image, "");
-  for (const std::string& layer : film::light_layers_of(image)) {
-    const double share = all > 0 ? light_of(image, layer + ".") / all : 0;
+  const double all = light_of(image.seen());
+  std::vector<std::string> layers = film::light_layers_of(image);
+  if (image.has_background()) layers.emplace_back(film::kBackground);
+  for (const std::string& layer : layers) {
+    const double share = all > 0 ? light_of(image.rgb(layer + ".")) / all : 0;
     const auto given = weights.find(layer);
     const Rgb weight = given == weights.end() ? Rgb(1) : given->second;
     rows.push_back(

@@ -55,6 +55,17 @@ class Picture:
         return self._picture.rgb("unfiltered-input.")
 
     @property
+    def alpha(self) -> npt.NDArray[np.float32] | None:
+        """Alpha, (height, width): of a dump that has it, else None. ``rgb`` is then premultiplied,
+        and ``rgb + background`` is what ``save()`` to a PNG and ``error()`` look at."""
+        return self["A"] if "A" in self.layers else None
+
+    @property
+    def background(self) -> npt.NDArray[np.float32] | None:
+        """The background that alpha keeps apart from the colours, (height, width, 3), else None."""
+        return self._picture.rgb("background.") if "background.R" in self.layers else None
+
+    @property
     def neighbors(self) -> npt.NDArray[np.float32]:
         """The mean number of records averaged, (height, width)."""
         return self["neighbors.Y"]
@@ -118,5 +129,5 @@ def as_picture(name: str, value: Picture | FileName) -> Picture:
 
 
 def read_picture(path: FileName, layer: str = "") -> Picture:
-    """Reads the colours of an EXR: its root or the layer of this name."""
+    """Reads the colours of an EXR, with their background: its root or the layer of this name."""
     return Picture(_psf.Picture.read(file_name("path", path), layer))

@@ -149,8 +149,9 @@ void add_output(std::vector<Option>& table) {
       {{"raw", formats::Codec::raw}, {"zstd", formats::Codec::zstd}}, "how columns are stored"));
   Option channels =
       parsed("channels", "NAME,...", kOutput, "names of channels",
-             "optional channels to write, comma-separated: normal, reflectance, camera, "
-             "visibility, hit_distance, direction, material, roughness; all unless given",
+             "optional channels to write, comma-separated: default, which is normal, reflectance, "
+             "camera, visibility, hit_distance, direction, material, roughness, and what there is "
+             "unless given; film, lens, time, frame, alpha, kind; or all",
              [](Job& job, const std::string& text) {
                job.settings.channels.push_back(text);
                return true;

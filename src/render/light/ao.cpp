@@ -35,6 +35,7 @@ PathRecord AoIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool sha
     Surface surface;
     const float distance = transport_.next_surface(walk, surface, rays);
     if (std::isinf(distance)) return record;
+    record.coverage = 1;
     record.distance += distance;
     Vertex v = transport_.vertex(surface, walk.ray.direction);
     if (v.bsdf.black()) return record;

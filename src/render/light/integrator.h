@@ -52,6 +52,9 @@
 
 namespace psf::render {
 
+// What x_i lies on; the numbers are those of the channel `kind`.
+enum class VertexKind : std::uint8_t { surface, curve, volume };
+
 struct Ray {
   Vec3 origin, direction;  // direction is unit
 };
@@ -76,6 +79,10 @@ struct PathRecord {
   Vec3 direction{0, 0, 0};     // omega_i, unit, from x_i to the previous vertex or the camera
   std::uint32_t material = 0;  // index in Scene::materials
   float roughness = 0;         // q_i, perceptual, of the smoothest lobe; 1 for diffuse
+  // The channel `alpha`: 1 where the camera segment met anything, glass and mirrors too; 0 where it
+  // went to the background. Not alpha_i.
+  float coverage = 0;
+  VertexKind kind = VertexKind::surface;
 };
 
 // Converts `record`, whose lengths and positions are those of `space`, to world units.

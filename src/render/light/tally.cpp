@@ -36,7 +36,7 @@ LayerPlan::LayerPlan(LayerKind kind, const Lights& lights) : kind_(kind) {
   if (kind != LayerKind::lights) return;
   const std::vector<std::string> sources = lights.names();
   std::map<std::string, std::size_t> numbers;
-  std::vector<std::string> taken = {kSky};
+  std::vector<std::string> taken = {kSky, film::kBackground};
   for (const std::string& source : sources) {
     const auto [found, is_new] = numbers.emplace(source, layers_.size());
     of_light_.push_back(found->second);

@@ -20,6 +20,7 @@ PathRecord VertexIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool
       record.unfiltered += transport.met(walk, nullptr, seen);
       return record;
     }
+    record.coverage = 1;
     record.distance += distance;
     record.unfiltered += transport.met(walk, &surface, seen);
     if (!enter(walk)) return record;

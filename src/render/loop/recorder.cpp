@@ -17,6 +17,9 @@ const void* bytes(const std::vector<T>& values) {
   return values.data();
 }
 
+// Names that stand for channels.
+constexpr std::string_view kDefaultChannels = "default", kAllChannels = "all";
+
 struct LayerChannel {
   std::string name;
   std::span<Rgb> LayerSums::*part;
@@ -37,53 +40,69 @@ std::vector<LayerChannel> layer_channels(std::span<const LayerInfo> layers) {
 
 // One row a channel: the file's side and the recorder's.
 struct ColumnTable {
+  enum class Use { always, standard, asked };  // standard: unless others are asked for
   struct Row {
     formats::Channel channel;
-    bool always;
+    Use use;
     const void* (*data)(const Recorder&);
   };
   static const std::vector<Row>& rows() {
     using formats::Type;
     using R = const Recorder&;
-    static_assert(sizeof(Vec3) == 12 && sizeof(Rgb) == 12, "vectors are stored as they lie");
+    constexpr Use always = Use::always, standard = Use::standard, asked = Use::asked;
+    static_assert(
+        sizeof(Vec2) == 8 && sizeof(VertexKind) == 1 && sizeof(Vec3) == 12 && sizeof(Rgb) == 12,
+        "vectors are stored as they lie");
     static const std::vector<Row> table{
-        {{"position", Type::f32, 3}, true, [](R r) { return bytes(r.position_); }},
-        {{"normal", Type::f32, 3}, false, [](R r) { return bytes(r.normal_); }},
-        {{"reflectance", Type::f32, 3}, false, [](R r) { return bytes(r.reflectance_); }},
-        {{"throughput", Type::f32, 3}, true, [](R r) { return bytes(r.throughput_); }},
-        {{"contribution", Type::f32, 3}, true, [](R r) { return bytes(r.contribution_); }},
-        {{"unfiltered", Type::f32, 3}, true, [](R r) { return bytes(r.unfiltered_); }},
-        {{"distance", Type::f32, 1}, true, [](R r) { return bytes(r.distance_); }},
-        {{"pixel", Type::u32, 1}, true, [](R r) { return bytes(r.pixel_); }},
-        {{"flags", Type::u8, 1}, true, [](R r) { return bytes(r.flags_); }},
-        {{"camera", Type::u16, 1}, false, [](R r) { return bytes(r.camera_); }},
-        {{"visibility", Type::u32, 1}, false, [](R r) { return bytes(r.visibility_); }},
-        {{"hit_distance", Type::f32, 1}, false, [](R r) { return bytes(r.hit_distance_); }},
-        {{"direction", Type::f32, 3}, false, [](R r) { return bytes(r.direction_); }},
-        {{"material", Type::u32, 1}, false, [](R r) { return bytes(r.material_); }},
-        {{"roughness", Type::f32, 1}, false, [](R r) { return bytes(r.roughness_); }}};
+        {{"position", Type::f32, 3}, always, [](R r) { return bytes(r.position_); }},
+        {{"normal", Type::f32, 3}, standard, [](R r) { return bytes(r.normal_); }},
+        {{"reflectance", Type::f32, 3}, standard, [](R r) { return bytes(r.reflectance_); }},
+        {{"throughput", Type::f32, 3}, always, [](R r) { return bytes(r.throughput_); }},
+        {{"contribution", Type::f32, 3}, always, [](R r) { return bytes(r.contribution_); }},
+        {{"unfiltered", Type::f32, 3}, always, [](R r) { return bytes(r.unfiltered_); }},
+        {{"distance", Type::f32, 1}, always, [](R r) { return bytes(r.distance_); }},
+        {{"pixel", Type::u32, 1}, always, [](R r) { return bytes(r.pixel_); }},
+        {{"flags", Type::u8, 1}, always, [](R r) { return bytes(r.flags_); }},
+        {{"camera", Type::u16, 1}, standard, [](R r) { return bytes(r.camera_); }},
+        {{"visibility", Type::u32, 1}, standard, [](R r) { return bytes(r.visibility_); }},
+        {{"hit_distance", Type::f32, 1}, standard, [](R r) { return bytes(r.hit_distance_); }},
+        {{"direction", Type::f32, 3}, standard, [](R r) { return bytes(r.direction_); }},
+        {{"material", Type::u32, 1}, standard, [](R r) { return bytes(r.material_); }},
+        {{"roughness", Type::f32, 1}, standard, [](R r) { return bytes(r.roughness_); }},
+        {{"film", Type::f32, 2}, asked, [](R r) { return bytes(r.film_); }},
+        {{"lens", Type::f32, 2}, asked, [](R r) { return bytes(r.lens_); }},
+        {{"time", Type::f32, 1}, asked, [](R r) { return bytes(r.time_); }},
+        {{"frame", Type::u32, 1}, asked, [](R r) { return bytes(r.frame_); }},
+        {{"alpha", Type::f32, 1}, asked, [](R r) { return bytes(r.coverage_); }},
+        {{"kind", Type::u8, 1}, asked, [](R r) { return bytes(r.kind_); }}};
     return table;
   }
 };
 
 std::vector<formats::Channel> record_channels(std::span<const std::string> optional,
                                               std::span<const LayerInfo> layers) {
+  using Use = ColumnTable::Use;
   const auto& rows = ColumnTable::rows();
   for (const std::string& name : optional) {
     const auto is_named = [&](const auto& row) { return row.channel.name == name; };
+    if (name == kDefaultChannels || name == kAllChannels) continue;
     if (std::any_of(rows.begin(), rows.end(), is_named)) continue;
     std::vector<std::string> names;
     for (const auto& row : rows) {
-      if (!row.always) names.push_back(row.channel.name);
+      if (row.use != Use::always) names.push_back(row.channel.name);
     }
+    names.insert(names.end(), {std::string(kDefaultChannels), std::string(kAllChannels)});
     throw Error(ErrorCode::usage, fmt::format("no channel is called \"{}\"; there are {}", name,
                                               fmt::join(names, ", ")));
   }
+  const auto has = [&](std::string_view name) {
+    return std::find(optional.begin(), optional.end(), name) != optional.end();
+  };
+  const bool all = has(kAllChannels), standard = optional.empty() || has(kDefaultChannels);
   std::vector<formats::Channel> channels;
   for (const auto& row : rows) {
-    const bool wanted =
-        std::find(optional.begin(), optional.end(), row.channel.name) != optional.end();
-    if (row.always || optional.empty() || wanted) channels.push_back(row.channel);
+    const bool by_set = all || row.use == Use::always || (standard && row.use == Use::standard);
+    if (by_set || has(row.channel.name)) channels.push_back(row.channel);
   }
   for (const LayerChannel& layer : layer_channels(layers)) {
     channels.push_back({layer.name, formats::Type::f32, 3});
@@ -91,7 +110,15 @@ std::vector<formats::Channel> record_channels(std::span<const std::string> optio
   return channels;
 }
 
-Recorder::Recorder(std::size_t capacity, std::span<const LayerInfo> layers)
+bool has_sample(std::span<const formats::Channel> channels) {
+  return std::any_of(channels.begin(), channels.end(), [](const formats::Channel& channel) {
+    const std::string& name = channel.name;
+    return name == "film" || name == "lens" || name == "time" || name == "frame";
+  });
+}
+
+Recorder::Recorder(std::size_t capacity, std::span<const LayerInfo> layers,
+                   std::span<const formats::Channel> channels)
     : position_(capacity),
       normal_(capacity),
       direction_(capacity),
@@ -110,6 +137,16 @@ Recorder::Recorder(std::size_t capacity, std::span<const LayerInfo> layers)
   for (const auto& [name, part, layer] : layer_channels(layers)) {
     layers_.push_back({name, part, layer, std::vector<Rgb>(capacity)});
   }
+  const auto make_room = [&](std::string_view name, auto& column) {
+    const auto is_named = [&](const formats::Channel& channel) { return channel.name == name; };
+    if (std::any_of(channels.begin(), channels.end(), is_named)) column.resize(capacity);
+  };
+  make_room("film", film_);
+  make_room("lens", lens_);
+  make_room("time", time_);
+  make_room("frame", frame_);
+  make_room("alpha", coverage_);
+  make_room("kind", kind_);
 }
 
 void Recorder::set(std::size_t slot, std::uint16_t camera, std::uint32_t pixel,
@@ -130,7 +167,16 @@ void Recorder::set(std::size_t slot, std::uint16_t camera, std::uint32_t pixel,
   camera_[slot] = camera;
   flags_[slot] = static_cast<std::uint8_t>((record.has_vertex ? kHasVertexFlag : 0) |
                                            (record.shaded ? kShadedFlag : 0));
+  if (!coverage_.empty()) coverage_[slot] = record.coverage;
+  if (!kind_.empty()) kind_[slot] = record.kind;
   for (LayerColumn& column : layers_) column.values[slot] = (sums.*column.part)[column.layer];
+}
+
+void Recorder::set_sample(std::size_t slot, const CameraSample& sample) {
+  if (!film_.empty()) film_[slot] = sample.film;
+  if (!lens_.empty()) lens_[slot] = sample.lens;
+  if (!time_.empty()) time_[slot] = sample.time;
+  if (!frame_.empty()) frame_[slot] = sample.frame;
 }
 
 std::vector<const void*> Recorder::columns(std::span<const formats::Channel> channels) const {
@@ -148,7 +194,7 @@ std::vector<const void*> Recorder::columns(std::span<const formats::Channel> cha
 
 void Recorder::load(const formats::Reader& reader, std::uint64_t first, std::size_t count) {
   for (const auto& row : ColumnTable::rows()) {
-    if (!row.always) continue;
+    if (row.use != ColumnTable::Use::always) continue;
     // The column is this object's own, which is not const here.
     auto* column = static_cast<std::byte*>(const_cast<void*>(row.data(*this)));
     reader.read(reader.require(row.channel.name, "the picture"), first, count,

@@ -18,24 +18,41 @@ constexpr std::uint8_t kHasVertexFlag = 1;  // bits of the channel `flags`
 constexpr std::uint8_t kShadedFlag = 2;
 
 // The channels to write, in the format's order: those that the format requires; `flags` and
-// `unfiltered`, without which pictures cannot be made; and of the others those in `optional`, or
-// all where it is empty; then those of the layers of the light. Throws Error{usage} that names an
-// unknown channel and the known ones.
+// `unfiltered`, without which pictures cannot be made; and of the others those in `optional`, where
+// "default" stands for those that files have unless told otherwise, and "all" for every one; empty:
+// "default". Then those of the layers of the light. Throws Error{usage} that names an unknown
+// channel and the known ones.
 [[nodiscard]] std::vector<formats::Channel> record_channels(
     std::span<const std::string> optional = {}, std::span<const LayerInfo> layers = {});
 
+// Where a path begins, as the channels of these names have it.
+struct CameraSample {
+  Vec2 film{0, 0};  // pixels
+  Vec2 lens{0, 0};  // of the unit disk
+  float time = 0;
+  std::uint32_t frame = 0;
+};
+
+// Whether any of the channels is one of CameraSample.
+[[nodiscard]] bool has_sample(std::span<const formats::Channel> channels);
+
 class Recorder {
  public:
-  // `layers`: those of the light that the records will have.
-  explicit Recorder(std::size_t capacity, std::span<const LayerInfo> layers = {});
+  // `layers`: those of the light that the records will have. `channels`: from record_channels();
+  // those that are not among the default ones take room only where they are named here.
+  explicit Recorder(std::size_t capacity, std::span<const LayerInfo> layers = {},
+                    std::span<const formats::Channel> channels = {});
 
   // Sets record `slot` < capacity. Different slots may be set from different threads at once.
   // `sums`: as the layers are numbered.
   void set(std::size_t slot, std::uint16_t camera, std::uint32_t pixel, const PathRecord& record,
            const LayerSums& sums = {});
+  // Sets what record `slot` has of CameraSample, as far as there is room for it. Thread-safe like
+  // set().
+  void set_sample(std::size_t slot, const CameraSample& sample);
 
   // The address of the first value of each channel, for formats::Writer::append(). `channels` are
-  // from record_channels(). Valid as long as the recorder exists.
+  // from record_channels(), as given to the constructor. Valid as long as the recorder exists.
   [[nodiscard]] std::vector<const void*> columns(std::span<const formats::Channel> channels) const;
 
   // Sets the first `count` slots to the records from `first` on of a dump with record_channels(),
@@ -56,6 +73,11 @@ class Recorder {
   std::vector<std::uint32_t> pixel_, visibility_, material_;
   std::vector<std::uint16_t> camera_;
   std::vector<std::uint8_t> flags_;
+  // Of channels that are not among the default ones; empty where they were not asked for.
+  std::vector<Vec2> film_, lens_;
+  std::vector<float> time_, coverage_;
+  std::vector<std::uint32_t> frame_;
+  std::vector<VertexKind> kind_;
   // A channel of a layer, and the layer's number.
   struct LayerColumn {
     std::string channel;

@@ -58,11 +58,17 @@ class LayerSpace {
 
 // What a slab of paths gives to the file.
 struct Slab {
-  Slab(std::size_t paths, std::span<const LayerInfo> layers)
-      : records(paths, layers), vertices(core::range_count(paths, kGrain)) {}
+  Slab(std::size_t paths, std::span<const LayerInfo> layers,
+       std::span<const formats::Channel> channels)
+      : records(paths, layers, channels), vertices(core::range_count(paths, kGrain)) {}
   Recorder records;
   std::vector<std::vector<VertexRow>> vertices;  // of each task
 };
+
+// A position on the film as a float in its pixel: rounding must not take it to the next one.
+float in_pixel(float position, std::uint32_t pixel) {
+  return std::min(position, std::nextafter(static_cast<float>(pixel + 1), 0.0f));
+}
 
 class Loop {
  public:
@@ -73,7 +79,8 @@ class Loop {
         settings_(settings),
         writer_(writer),
         shade_rate_(settings.shade_rate),
-        channels_(record_channels(settings.channels, integrator.layers())) {
+        channels_(record_channels(settings.channels, integrator.layers())),
+        has_sample_(has_sample(channels_)) {
     result_.films.reserve(settings.cameras.size());
     std::size_t largest = 0;
     for (const std::size_t index : settings.cameras) {
@@ -85,7 +92,7 @@ class Loop {
     }
     if (settings.integrator.vertices > 0) slab_ = kVertexSlab;
     for (auto& slab : slabs_) {
-      slab = std::make_unique<Slab>(std::min(slab_, largest), integrator.layers());
+      slab = std::make_unique<Slab>(std::min(slab_, largest), integrator.layers(), channels_);
     }
   }
 
@@ -112,6 +119,7 @@ class Loop {
   formats::Writer* writer_;
   ShadeRate shade_rate_;
   std::vector<formats::Channel> channels_;
+  bool has_sample_;  // whether any channel is of CameraSample
   std::vector<View> views_;
   std::uint64_t paths_a_pass_ = 0;
   std::uint64_t paths_done_ = 0;
@@ -253,6 +261,10 @@ void Loop::trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path
   // Without a vertex it is not shaded either way; the flag says that it counts.
   if (!record.has_vertex && settings_.shade_rate > 1) record.shaded = shade;
   slab.records.set(slot, camera, y * view.width + x, in_world(record, space_), sums);
+  if (has_sample_) {
+    const Vec2 on_lens = view.rays.has_lens() ? concentric_disk(lens) : Vec2(0, 0);
+    slab.records.set_sample(slot, {{in_pixel(position.x, x), in_pixel(position.y, y)}, on_lens});
+  }
   if (trail == nullptr) return;
   add_vertices(trail->vertices(), static_cast<std::uint32_t>(in_pass), space_,
                slab.vertices[slot / kGrain]);

@@ -24,7 +24,7 @@ struct RenderSettings {
   std::uint64_t passes = 16;          // a pass has width * height paths for each camera
   std::vector<std::size_t> cameras;   // indices into Scene::cameras; empty: all
   std::uint32_t shade_rate = 1;       // K, 1 to kMostShadeRate: one path in K is shaded
-  std::vector<std::string> channels;  // optional channels to write; empty: all
+  std::vector<std::string> channels;  // optional channels to write; empty: those of the default
   double time_limit = std::numeric_limits<double>::infinity();  // seconds; the pass is finished
   bool replay = true;  // on resume, read the passes of the file back into the films
   std::string producer = "psf-render";
