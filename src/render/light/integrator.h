@@ -100,7 +100,7 @@ struct IntegratorSettings {
   float vpl_distance = 0;
   std::uint32_t photon_paths = 131072;  // light paths of a pass
   float photon_radius = 0;              // in world units; 0: chosen by the scene's size
-  float photon_delta = 1.0f / 3;        // how the radius shrinks with the passes, 0 to < 1
+  float photon_delta = 0.333333f;       // how the radius shrinks with the passes, 0 to < 1
   LayerKind layers = LayerKind::none;  // layers of the light that a path is divided into; not of ao
 };
 
