@@ -22,7 +22,7 @@ struct Metadata {
   std::string producer;    // program and version
   std::string scene;       // file name without folder
   std::string scene_hash;  // over everything that shapes the picture
-  std::string integrator;  // path, direct, ao, ...
+  std::string integrator;  // path, direct, vpl, photon, ao, ...
   std::string sampler;     // sobol, halton, independent
   // "pixel" (a pass visits pixels in order) or "global" (one sequence over the image plane).
   std::string enumeration;

@@ -147,6 +147,24 @@ TEST_CASE("Photons agree with path tracing, but for the bias at edges") {
   CHECK(std::abs(found.mean - expected.mean) < 3 * error + 0.005 * expected.mean);
 }
 
+TEST_CASE("Photons gather the caustic of a glass ball that long paths find") {
+  Scene scene;
+  const int white = add_material(scene, MaterialKind::diffuse, 0.6f);
+  const int glass = add_material(scene, MaterialKind::glass, 1);
+  const int lamp = add_material(scene, MaterialKind::diffuse, 0, 8);
+  scene.meshes.push_back(make_floor(white, 2));
+  scene.spheres.push_back({"", {0, 0.6f, 0}, 0.5f, glass});
+  scene.spheres.push_back({"", {0, 3, 0}, 0.4f, lamp});
+  scene.cameras = {camera_at({2, 0.5f, 0}, {0, 0, 0}, 6)};
+  scene.cameras[0].fov = 0.08f;  // the caustic fills the picture
+  const Estimate expected = estimate_picture(scene, {}, 512);
+  const Estimate found = estimate_picture(scene, photon(50000, 0.03f), 4, 8);
+  check_agree(found, expected, 0.025);
+  // Without the ball the lamp alone is less than half as bright there.
+  scene.spheres.erase(scene.spheres.begin());
+  CHECK(estimate_picture(scene, {}, 16).mean < 0.5 * expected.mean);
+}
+
 TEST_CASE("Photons of no other side, and of no surface at an angle, are gathered") {
   // A thin wall, bright on its far side, on a dark floor that is bright beyond it.
   Scene scene;

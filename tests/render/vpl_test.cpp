@@ -28,7 +28,7 @@ TEST_CASE("Virtual lights: a diffuse furnace has its radiance everywhere, into t
   add_room(scene, {wall, wall, wall, wall, wall, wall});
   for (const VplSet set : {VplSet::pass, VplSet::pixel}) {
     for (const SamplerKind kind : kKinds) {
-      const auto integrator = make_integrator(scene, vpl(set));
+      const auto integrator = make_integrator(scene, vpl(set, 0.3f));
       for (const Vec3& target : {Vec3(0.3f, -1, 0.2f), Vec3(0.97f, -1, 0.96f)}) {
         CAPTURE(set, kind, target.x);
         check(estimate_passes(*integrator, ray({-0.3f, 0.2f, 0.1f}, target), kind, 512, 1, 32), 1);

@@ -242,11 +242,11 @@ void add_transport(std::vector<Option>& table) {
       {{"pass", VplSet::pass}, {"pixel", VplSet::pixel}},
       "vpl: one set of light paths for all paths of a pass, or a set drawn for each"));
   add("vpl-distance", &Settings::vpl_distance, 0.0f, kLongest,
-      "vpl: lights nearer than this are bounded; 0: 15 % of the scene's radius", "D");
+      "vpl: lights nearer to the vertex than this are bounded; 0: 6 % of its distance", "D");
   add("photon-paths", &Settings::photon_paths, std::uint32_t{1}, kMostLightPaths,
       "photon: light paths of a pass");
   add("photon-radius", &Settings::photon_radius, 0.0f, kLongest,
-      "photon: of the first pass; 0: 1 % of the scene's radius", "R");
+      "photon: of the first pass; 0: 1 % of the vertex's distance", "R");
   add("photon-delta", &Settings::photon_delta, 0.0f, 0.999f,
       "photon: pass p has this radius / sqrt(p^delta)", "DELTA");
   add("ao-distance", &Settings::ao_distance, 1e-6f, kInfinity,

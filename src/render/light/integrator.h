@@ -103,12 +103,12 @@ struct IntegratorSettings {
   float ao_distance = std::numeric_limits<float>::infinity();
   std::uint32_t vpl_paths = 16;  // light paths of a set
   VplSet vpl_set = VplSet::pass;
-  // For vpl, in world units: the geometric term is bounded by 1 / vpl_distance^2; 0: chosen by the
-  // scene's size.
+  // For vpl, in world units: the geometric term is bounded by 1 / vpl_distance^2; 0: by a part of the
+  // distance d_i.
   float vpl_distance = 0;
   std::uint32_t photon_paths = 131072;  // light paths of a pass
-  float photon_radius = 0;              // in world units; 0: chosen by the scene's size
-  float photon_delta = 1.0f / 3;        // how the radius shrinks with the passes, 0 to < 1
+  float photon_radius = 0;              // in world units; 0: a part of the distance d_i
+  float photon_delta = 0.333333f;       // how the radius shrinks with the passes, 0 to < 1
   LayerKind layers = LayerKind::none;  // layers of the light that a path is divided into; not of ao
   // The most vertices of a path that its trail is to have; 0: no trail. For path and direct, without
   // split, whose paths are chains.

@@ -13,11 +13,11 @@ class PathIntegrator final : public VertexIntegrator {
       : VertexIntegrator(std::move(lit)), indirect_(indirect) {}
 
  private:
-  Rgb gather(const Vertex& x, int depth, Branch& branch) const override {
+  Rgb gather(const Vertex& x, const Segment& segment, Branch& branch) const override {
     Rgb sum;
     Walk walk;
     Surface surface;
-    if (gather_direct(x, depth, branch, walk, surface, sum) && indirect_ && enter(walk)) {
+    if (gather_direct(x, segment.depth, branch, walk, surface, sum) && indirect_ && enter(walk)) {
       follow(transport().vertex(surface, walk.ray.direction), walk, branch, sum);
     }
     return sum;

@@ -11,45 +11,45 @@ namespace psf::render {
 
 namespace {
 
-// The standard radius, as a part of the scene's.
+// The standard radius, as a part of the distance from the camera.
 constexpr float kRadius = 0.01f;
 
 class PhotonIntegrator final : public VertexIntegrator {
  public:
-  // `map`, `radius`: of a pass.
+  // `map`: of a pass; `shrunk`: its radius over that of the first.
   explicit PhotonIntegrator(std::shared_ptr<const LitScene> lit,
-                            std::shared_ptr<const PhotonMap> map = nullptr, float radius = 0)
-      : VertexIntegrator(std::move(lit)), map_(std::move(map)), radius_(radius) {}
+                            std::shared_ptr<const PhotonMap> map = nullptr, float shrunk = 1)
+      : VertexIntegrator(std::move(lit)), map_(std::move(map)), shrunk_(shrunk) {}
 
   std::unique_ptr<const Integrator> for_pass(const SamplerSettings& sampler, std::uint64_t pass,
                                              std::uint64_t& rays) const override {
     const IntegratorSettings& settings = transport().settings();
-    const float asked = settings.photon_radius;
-    const float first = asked > 0 ? asked : kRadius * transport().accel().radius();
     const auto number = static_cast<double>(pass + 1);
     const double shrunk = std::pow(number, -0.5 * double{settings.photon_delta});
     return std::make_unique<PhotonIntegrator>(
         lit(), std::make_shared<const PhotonMap>(transport(), sampler, pass, rays),
-        static_cast<float>(double{first} * shrunk));
+        static_cast<float>(shrunk));
   }
 
  private:
-  Rgb gather(const Vertex& x, int depth, Branch& branch) const override {
+  Rgb gather(const Vertex& x, const Segment& segment, Branch& branch) const override {
     Rgb sum;
     Walk walk;
     Surface surface;
-    static_cast<void>(gather_direct(x, depth, branch, walk, surface, sum));
+    static_cast<void>(gather_direct(x, segment.depth, branch, walk, surface, sum));
     return sum;
   }
 
-  Rgb gather_once(const Vertex& x, int depth, const Sampler&, std::uint64_t&,
-                  Tally tally) const override {
+  Rgb gather_once(const Vertex& x, const Segment& segment, const Sampler&, std::uint64_t&,
+                  Tally& tally) const override {
     assert(map_ != nullptr);
     tally.bounce();
     Rgb sum(0, 0, 0);
     // x itself is the last surface that a photon met, and the camera's path has counted it.
-    const int most_depth = transport().settings().max_depth - depth + 1;
-    map_->estimate(x, radius_, most_depth, [&](const Photon& photon, const Rgb& radiance) {
+    const int most_depth = transport().settings().max_depth - segment.depth + 1;
+    const float asked = transport().settings().photon_radius;
+    const float radius = (asked > 0 ? asked : kRadius * segment.distance) * shrunk_;
+    map_->estimate(x, radius, most_depth, [&](const Photon& photon, const Rgb& radiance) {
       if (tally.wants_diffuse()) {
         tally.set_diffuse(x.bsdf.diffuse_share(x.local, x.frame.to_local(photon.direction)));
       }
@@ -60,7 +60,7 @@ class PhotonIntegrator final : public VertexIntegrator {
   }
 
   std::shared_ptr<const PhotonMap> map_;
-  float radius_;
+  float shrunk_;
 };
 
 }  // namespace

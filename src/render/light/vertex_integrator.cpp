@@ -53,10 +53,11 @@ void VertexIntegrator::shade_vertex(const Vertex& x, const Walk& walk, Sampler& 
   record.shaded = true;
   const std::uint32_t split = transport().settings().split;
   const Sampler here = sampler;
+  const Segment segment{walk.depth, record.distance};
   const auto tally = [&] { return Tally::of_vertex(lit_->plan, details.layers); };
   if (split <= 1) {
     Branch branch{sampler, record.visibility, record.hit_distance, rays, tally(), details.trail};
-    record.contribution = gather(x, walk.depth, branch);
+    record.contribution = gather(x, segment, branch);
   } else {
     std::uint32_t no_bits = 0;
     float no_distance;
@@ -64,15 +65,17 @@ void VertexIntegrator::shade_vertex(const Vertex& x, const Walk& walk, Sampler& 
       Sampler continued = sampler.split(k, split);
       Branch branch{continued, k == 0 ? record.visibility : no_bits,
                     k == 0 ? record.hit_distance : no_distance, rays, tally()};
-      record.contribution += gather(x, walk.depth, branch);
+      record.contribution += gather(x, segment, branch);
     }
     record.contribution *= 1 / static_cast<float>(split);
     for (Rgb& layer : details.layers.contribution) layer *= 1 / static_cast<float>(split);
   }
-  record.contribution += gather_once(x, walk.depth, here, rays, tally());
+  Tally once = tally();
+  record.contribution += gather_once(x, segment, here, rays, once);
 }
 
-Rgb VertexIntegrator::gather_once(const Vertex&, int, const Sampler&, std::uint64_t&, Tally) const {
+Rgb VertexIntegrator::gather_once(const Vertex&, const Segment&, const Sampler&, std::uint64_t&,
+                                  Tally&) const {
   return {0, 0, 0};
 }
 

@@ -31,6 +31,11 @@ class VertexIntegrator : public Integrator {
   [[nodiscard]] const std::shared_ptr<const LitScene>& lit() const { return lit_; }
   [[nodiscard]] const Transport& transport() const { return lit_->transport; }
 
+  // The way from the camera to x_i.
+  struct Segment {
+    int depth;       // surface interactions, with that at x_i
+    float distance;  // d_i
+  };
   // What one continuation from x_i computes, beside its part of c_i.
   struct Branch {
     Sampler& sampler;
@@ -40,11 +45,13 @@ class VertexIntegrator : public Integrator {
     Tally tally;
     Trail* trail = nullptr;
   };
-  // The radiance that one continuation from x_i, at this depth of the path, brings back.
-  [[nodiscard]] virtual Rgb gather(const Vertex& x, int depth, Branch& branch) const = 0;
+  // The radiance that one continuation from x_i brings back.
+  [[nodiscard]] virtual Rgb gather(const Vertex& x, const Segment& segment,
+                                   Branch& branch) const = 0;
   // A part of c_i that is the same for every continuation of a path; `sampler` is where x_i is.
-  [[nodiscard]] virtual Rgb gather_once(const Vertex& x, int depth, const Sampler& sampler,
-                                        std::uint64_t& rays, Tally tally) const;
+  [[nodiscard]] virtual Rgb gather_once(const Vertex& x, const Segment& segment,
+                                        const Sampler& sampler, std::uint64_t& rays,
+                                        Tally& tally) const;
 
   // Adds to `sum` the light that lights send straight to x, as light sampling and one scattered ray
   // find it together. Returns whether the ray met a surface: then `walk` has arrived at `surface`,

@@ -12,8 +12,8 @@ namespace psf::render {
 
 namespace {
 
-// The standard bound, as a part of the scene's radius.
-constexpr float kNear = 0.15f;
+// The standard distance of the bound, as a part of that from the camera.
+constexpr float kNear = 0.06f;
 
 using Vpls = std::vector<LightVertex>;
 
@@ -22,32 +22,32 @@ class VplIntegrator final : public VertexIntegrator {
   // `vpls`: of a pass; null where there is none yet, or where each path has its own.
   explicit VplIntegrator(std::shared_ptr<const LitScene> lit,
                          std::shared_ptr<const Vpls> vpls = nullptr)
-      : VertexIntegrator(std::move(lit)), vpls_(std::move(vpls)) {
-    const float asked = settings().vpl_distance;
-    const float distance = asked > 0 ? asked : kNear * transport().accel().radius();
-    bound_ = 1 / (distance * distance);
-  }
+      : VertexIntegrator(std::move(lit)), vpls_(std::move(vpls)) {}
 
   std::unique_ptr<const Integrator> for_pass(const SamplerSettings& sampler, std::uint64_t pass,
                                              std::uint64_t& rays) const override;
 
  private:
   [[nodiscard]] const IntegratorSettings& settings() const { return transport().settings(); }
-  Rgb gather(const Vertex& x, int depth, Branch& branch) const override;
-  Rgb gather_once(const Vertex& x, int depth, const Sampler& sampler, std::uint64_t& rays,
-                  Tally tally) const override;
+  Rgb gather(const Vertex& x, const Segment& segment, Branch& branch) const override;
+  Rgb gather_once(const Vertex& x, const Segment& segment, const Sampler& sampler,
+                  std::uint64_t& rays, Tally& tally) const override;
   // Adds to `vpls` what `vertex` sends on by a lobe that is rough enough, if it has one.
   void keep(const LightVertex& vertex, Vpls& vpls) const;
   // The radiance that x scatters of what `vpl` sends, bounded.
-  Rgb connect(const Vertex& x, const LightVertex& vpl, std::uint64_t& rays) const;
+  Rgb connect(const Vertex& x, const LightVertex& vpl, float near, std::uint64_t& rays) const;
   // The part of the light from y to x that virtual lights bring; the rest is left to scattering.
-  float vpl_share(float cosine_x, float cosine_y, float distance_sq) const {
-    const float allowed = bound_ * distance_sq, wanted = cosine_x * cosine_y;
+  // `near`: the distance to which the bound belongs.
+  static float vpl_share(float cosine_x, float cosine_y, float distance_sq, float near) {
+    const float allowed = distance_sq / (near * near), wanted = cosine_x * cosine_y;
     return wanted <= allowed ? 1 : allowed / wanted;
+  }
+  float near_distance(const Segment& segment) const {
+    const float asked = settings().vpl_distance;
+    return asked > 0 ? asked : kNear * segment.distance;
   }
 
   std::shared_ptr<const Vpls> vpls_;
-  float bound_;
 };
 
 std::unique_ptr<const Integrator> VplIntegrator::for_pass(const SamplerSettings& sampler,
@@ -73,17 +73,18 @@ void VplIntegrator::keep(const LightVertex& vertex, Vpls& vpls) const {
   vpls.push_back(vpl);
 }
 
-Rgb VplIntegrator::gather(const Vertex& x, int depth, Branch& branch) const {
+Rgb VplIntegrator::gather(const Vertex& x, const Segment& segment, Branch& branch) const {
   Rgb sum;
   Walk walk;
   Surface surface;
-  if (!gather_direct(x, depth, branch, walk, surface, sum) || !enter(walk)) return sum;
+  if (!gather_direct(x, segment.depth, branch, walk, surface, sum) || !enter(walk)) return sum;
   Vertex y = transport().vertex(surface, walk.ray.direction);
   if (transport().select_lobe(y, walk, branch.sampler)) {
     const float cosine_x = dot(x.surface.normal, walk.ray.direction);
     const float cosine_y = dot(y.surface.geometric_normal, y.out);
     const float share =
-        vpl_share(cosine_x, cosine_y, length_sq(surface.position - x.surface.position));
+        vpl_share(cosine_x, cosine_y, length_sq(surface.position - x.surface.position),
+                  near_distance(segment));
     if (share >= 1) return sum;
     walk.throughput *= 1 - share;
   }
@@ -91,8 +92,8 @@ Rgb VplIntegrator::gather(const Vertex& x, int depth, Branch& branch) const {
   return sum;
 }
 
-Rgb VplIntegrator::gather_once(const Vertex& x, int depth, const Sampler& sampler,
-                               std::uint64_t& rays, Tally tally) const {
+Rgb VplIntegrator::gather_once(const Vertex& x, const Segment& segment, const Sampler& sampler,
+                               std::uint64_t& rays, Tally& tally) const {
   Vpls own;
   if (settings().vpl_set == VplSet::pixel) {
     const LightPaths paths(transport());
@@ -103,10 +104,11 @@ Rgb VplIntegrator::gather_once(const Vertex& x, int depth, const Sampler& sample
   }
   assert(vpls_ != nullptr || settings().vpl_set == VplSet::pixel);
   tally.bounce();
+  const float near = near_distance(segment);
   Rgb sum(0, 0, 0);
   for (const LightVertex& vpl : settings().vpl_set == VplSet::pixel ? own : *vpls_) {
-    if (depth + vpl.depth > settings().max_depth) continue;
-    const Rgb radiance = connect(x, vpl, rays);
+    if (segment.depth + vpl.depth > settings().max_depth) continue;
+    const Rgb radiance = connect(x, vpl, near, rays);
     if (is_black(radiance)) continue;
     if (tally.wants_diffuse()) {
       const Vec3 toward = normalize(vpl.at.surface.position - x.surface.position);
@@ -118,7 +120,8 @@ Rgb VplIntegrator::gather_once(const Vertex& x, int depth, const Sampler& sample
   return sum;
 }
 
-Rgb VplIntegrator::connect(const Vertex& x, const LightVertex& vpl, std::uint64_t& rays) const {
+Rgb VplIntegrator::connect(const Vertex& x, const LightVertex& vpl, float near,
+                           std::uint64_t& rays) const {
   const Surface& y = vpl.at.surface;
   const Vec3 between = y.position - x.surface.position;
   const float distance_sq = length_sq(between);
@@ -142,7 +145,7 @@ Rgb VplIntegrator::connect(const Vertex& x, const LightVertex& vpl, std::uint64_
   if (transport().accel().occluded(origin, target - origin, 1 - 0x1p-17f)) return {0, 0, 0};
   // evaluate() is times the cosine, which power has in it already.
   const float area = dot(vpl.at.out, y.geometric_normal) * distance_sq;
-  return f * vpl.power * (vpl_share(at_x.z, cosine_y, distance_sq) * cosine_y / area);
+  return f * vpl.power * (vpl_share(at_x.z, cosine_y, distance_sq, near) * cosine_y / area);
 }
 
 }  // namespace
