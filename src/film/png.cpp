@@ -20,8 +20,7 @@ std::vector<std::uint8_t> displayed(const Image& image, float exposure) {
   bytes.reserve(3 * colors.size());
   for (const Rgb& color : colors) {
     for (const float component : {color.x, color.y, color.z}) {
-      const float shown = srgb_from_linear(tone_map(component * scale));
-      bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * shown)));
+      bytes.push_back(displayed_byte(component * scale));
     }
   }
   return bytes;
