@@ -229,7 +229,7 @@ ConvergeResult converge(std::span<const std::string> dumps, const Picture& refer
 void ConvergeResult::save(const std::string& folder) const {
   const study::ConvergePaths paths(folder);
   core::check_apart(inputs, std::vector{paths.json, paths.csv});
-  check_none_there(paths);
+  study::check_none_there(paths.json);
   core::make_folder(folder);
   core::check_files(inputs, {paths.json, paths.csv});
   core::write_text_file(paths.csv, csv);
