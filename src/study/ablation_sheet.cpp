@@ -36,7 +36,7 @@ std::vector<std::string> AblationSheet::head(const run::Dump& dump) const {
       fmt::format("{}, {}; {}", dump_name, core::counted(passes_, "pass", "passes"), facts));
   if (!truth_) return lines;
   const std::string settings = metrics::settings(truth_->metric, truth_->options);
-  lines.push_back(fmt::format("{}{} against {}", metrics::name(truth_->metric),
+  lines.push_back(fmt::format("{}{} of whole pictures against {}", metrics::name(truth_->metric),
                               settings.empty() ? "" : " (" + settings + ")",
                               file_name(truth_->file)));
   return lines;
@@ -58,7 +58,7 @@ std::string AblationSheet::heading(const AblationRow& row) const {
 std::string AblationSheet::detail(const AblationRow& row) const {
   const std::string change = row.parameters ? "mean " + change_text(row) : std::string();
   if (!truth_) return change.empty() ? fmt::format("mean {:#.4g}", row.mean) : change;
-  return fmt::format("{} {:.4g}{}{}", metrics::name(truth_->metric), row.metrics[truth_->metric],
+  return fmt::format("{} {:#.4g}{}{}", metrics::name(truth_->metric), row.metrics[truth_->metric],
                      change.empty() ? "" : ", ", change);
 }
 

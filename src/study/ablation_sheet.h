@@ -20,7 +20,7 @@ class AblationSheet {
     std::string file;
     std::span<const Rgb> picture;  // borrowed
     metrics::Metric metric = metrics::Metric::rel_mse;
-    metrics::MetricOptions options;
+    metrics::MetricOptions options = {};
   };
 
   // Throws what film::ContactSheet throws.

@@ -201,7 +201,7 @@ void add_ablate(CLI::App& app) {
                    "sheet of all pictures with labels, .png, or folder for psf report; may be "
                    "repeated")
       ->required()
-      ->type_name("FILE.png|DIR")
+      ->type_name("DIR|FILE.png")
       ->allow_extra_args(false);
   command->add_option("--reference", options.reference, "what is right: an EXR of the same size")
       ->type_name("FILE.exr");
