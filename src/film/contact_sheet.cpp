@@ -168,18 +168,23 @@ void ContactSheet::add(std::span<const Rgb> picture, std::string label, std::str
 }
 
 Canvas ContactSheet::draw() const {
-  return Page(*this).draw();
-}
-
-void ContactSheet::write(const std::string& path) const {
   constexpr std::size_t kMostPixels = std::size_t{1} << 30;  // 3 GiB
   Page page(*this);
   if (page.width() > kMostPixels / std::max<std::size_t>(1, page.height())) {
     throw Error(ErrorCode::limit,
-                fmt::format("{}: the sheet would be {} x {} pixels; give `crop X,Y,WxH`", path,
-                            page.width(), page.height()));
+                fmt::format("the sheet would be {} x {} pixels; give `crop X,Y,WxH`", page.width(),
+                            page.height()));
   }
-  const Canvas canvas = page.draw();
+  return page.draw();
+}
+
+std::vector<std::uint8_t> ContactSheet::png() const {
+  const Canvas canvas = draw();
+  return encode_png_bytes(canvas.width, canvas.height, canvas.values);
+}
+
+void ContactSheet::write(const std::string& path) const {
+  const Canvas canvas = draw();
   write_png_bytes(path, canvas.width, canvas.height, canvas.values);
 }
 

@@ -37,9 +37,12 @@ class ContactSheet {
   // two lines below; a line may be empty.
   void add(std::span<const Rgb> picture, std::string label, std::string detail);
 
-  // The page. Crops much narrower than kCell are enlarged, each pixel to a square.
+  // The page. Crops much narrower than kCell are enlarged, each pixel to a square. Throws
+  // Error{limit} where it has more than 2^30 pixels.
   [[nodiscard]] Canvas draw() const;
-  // Throws Error{io}, and Error{limit} where the page has more pixels than a PNG may.
+  // The bytes of the file that write() writes. Throws what draw() throws.
+  [[nodiscard]] std::vector<std::uint8_t> png() const;
+  // Throws what draw() throws, and Error{io}.
   void write(const std::string& path) const;
 
   static constexpr std::size_t kCell = 256;  // pixels
