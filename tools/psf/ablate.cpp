@@ -103,11 +103,6 @@ film::SheetOptions sheet_of(const AblateOptions& options) {
   return sheet;
 }
 
-void write_study(const study::AblateReport& report, const AblateOutputs& outputs) {
-  core::write_text_file(outputs.in_folder("ablate.csv"), study::to_csv(report));
-  core::write_json_file(outputs.in_folder("ablate.json"), study::to_json(report), 1);
-}
-
 // The reference, where there is one, as its file has it and ready to measure with.
 struct AblateReference {
   AblateReference(const AblateOptions& options, const run::Dump& dump, std::size_t camera,
@@ -121,65 +116,88 @@ struct AblateReference {
   std::optional<metrics::Reference> prepared;
 };
 
+study::AblateRequest request_of(const AblateOptions& options, const run::Dump& dump,
+                                std::vector<std::string>& notes) {
+  study::AblateRequest request;
+  request.parameters = filter::parameters_of(options);
+  request.parameters.validate();
+  request.passes = parse_passes(options.passes);
+  request.max_memory = options.max_memory;
+  request.camera = find_camera(dump, options.camera);
+  fit_terms(dump, {&request.parameters, 1}, filter::asked_terms(options.given), notes);
+  return request;
+}
+
+// With the rows that are to be measured.
+study::AblateReport report_of(const AblateOptions& options, const run::Dump& dump,
+                              const study::AblateRequest& request, const AblateReference& truth,
+                              std::vector<std::string>& notes) {
+  study::AblateReport report;
+  report.rows = study::plan_ablation(dump, request, notes);
+  report.version = kVersion;
+  report.input = study::describe_input(dump, request.passes, request.camera);
+  if (!truth.prepared) return report;
+  report.measured = metrics::kAllMetrics;
+  report.metrics = study::describe_metrics(metrics::kAllMetrics, options.metrics);
+  report.reference = study::describe_reference(options.reference, truth.picture.colors);
+  return report;
+}
+
+// Measures the rows; their pictures go to the sheet, and to the folder where there is one.
+void measure(const AblateOptions& options, const AblateOutputs& outputs, const run::Dump& dump,
+             study::AblateRequest& request, study::AblateReport& report,
+             study::AblationSheet& sheet) {
+  core::Progress progress("ablate", options.common.quiet);
+  request.on_progress = [&](std::uint64_t done, std::uint64_t total) {
+    progress.advance(done, total);
+  };
+  const filter::CameraView& view = dump.cameras()[request.camera];
+  std::size_t number = 0;
+  request.on_row = [&](const study::AblationRow& row, const std::vector<Rgb>& picture) {
+    sheet.add(row, picture);
+    const std::string name = study::ablation_picture(number++);
+    if (!report.with_pictures) return;
+    write_study_picture(outputs.in_folder(name), view.width, view.height, picture, row.parameters);
+  };
+  study::ablate(dump, request, report.rows);
+  progress.finish();
+}
+
+void write_study(study::AblateReport& report, const AblateOutputs& outputs,
+                 const AblateReference& truth) {
+  if (truth.prepared) {
+    const film::Picture& picture = truth.picture;
+    write_study_picture(outputs.in_folder("reference.exr"), picture.width, picture.height,
+                        picture.colors, std::nullopt);
+    report.reference["picture"] = "reference.exr";
+  }
+  core::write_text_file(outputs.in_folder("ablate.csv"), study::to_csv(report));
+  core::write_json_file(outputs.in_folder("ablate.json"), study::to_json(report), 1);
+}
+
 void run(const AblateOptions& options) {
   keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
   const AblateOutputs outputs(options.outputs);
   const metrics::Metric metric = metrics::parse_metric(options.metric);
   options.metrics.validate();
-  study::AblateRequest request;
-  request.parameters = filter::parameters_of(options);
-  request.parameters.validate();
-  request.passes = parse_passes(options.passes);
-  request.max_memory = options.max_memory;
   const run::Dump dump(options.input);
-  request.camera = find_camera(dump, options.camera);
   std::vector<std::string> notes;
-  fit_terms(dump, {&request.parameters, 1}, filter::asked_terms(options.given), notes);
+  study::AblateRequest request = request_of(options, dump, notes);
   const AblateReference truth(options, dump, request.camera, notes);
-
-  study::AblateReport report;
-  report.rows = study::plan_ablation(dump, request, notes);
-  report.version = kVersion;
-  report.input = study::describe_input(dump, request.passes, request.camera);
+  study::AblateReport report = report_of(options, dump, request, truth, notes);
   report.with_pictures = !outputs.folder.empty();
   std::optional<study::AblationSheet::Truth> shown;
   if (truth.prepared) {
     request.reference = &*truth.prepared;
-    report.measured = metrics::kAllMetrics;
-    report.metrics = study::describe_metrics(metrics::kAllMetrics, options.metrics);
-    report.reference = study::describe_reference(options.reference, truth.picture.colors);
     shown = {options.reference, truth.picture.colors, metric, options.metrics};
   }
   study::AblationSheet sheet(dump, request, sheet_of(options), shown);
   prepare(options, outputs, report.rows.size());
   print_notes(notes, options.common.quiet);
 
-  const filter::CameraView& view = dump.cameras()[request.camera];
-  const auto write = [&](const std::string& name, const std::vector<Rgb>& picture,
-                         const std::optional<filter::Parameters>& parameters) {
-    if (!report.with_pictures) return;
-    write_study_picture(outputs.in_folder(name), view.width, view.height, picture, parameters);
-  };
-  core::Progress progress("ablate", options.common.quiet);
-  request.on_progress = [&](std::uint64_t done, std::uint64_t total) {
-    progress.advance(done, total);
-  };
-  request.on_row = [&](const study::AblationRow& row, const std::vector<Rgb>& picture) {
-    sheet.add(row, picture);
-    const auto number = static_cast<std::size_t>(&row - report.rows.data());
-    write(study::ablation_picture(number), picture, row.parameters);
-  };
-  study::ablate(dump, request, report.rows);
-  progress.finish();
-
-  if (report.with_pictures) {
-    if (truth.prepared) {
-      write("reference.exr", truth.picture.colors, std::nullopt);
-      report.reference["picture"] = "reference.exr";
-    }
-    write_study(report, outputs);
-  }
+  measure(options, outputs, dump, request, report, sheet);
+  if (report.with_pictures) write_study(report, outputs, truth);
   for (const std::string& path : outputs.sheets) sheet.sheet().write(path);
   if (!options.common.json.empty()) {
     core::write_json_file(options.common.json, study::to_json(report), 1);
