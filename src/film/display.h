@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace psf::film {
 
@@ -20,6 +21,11 @@ namespace psf::film {
 [[nodiscard]] inline float srgb_from_linear(float linear) {
   const float x = std::clamp(linear, 0.0f, 1.0f);
   return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
+}
+
+// The byte of a picture of 8 bits that shows it.
+[[nodiscard]] inline std::uint8_t displayed_byte(float linear) {
+  return static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(tone_map(linear))));
 }
 
 }  // namespace psf::film

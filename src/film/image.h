@@ -52,6 +52,9 @@ void write_exr(const std::string& path, const Image& image);
 void write_png(const std::string& path, const Image& image, float exposure = 0);
 // The bytes of the file that write_png() writes.
 [[nodiscard]] std::vector<std::uint8_t> encode_png(const Image& image, float exposure = 0);
+// The bytes of an 8-bit PNG of (height, width, 3) sRGB values.
+[[nodiscard]] std::vector<std::uint8_t> encode_png_bytes(std::size_t width, std::size_t height,
+                                                         std::span<const std::uint8_t> bytes);
 // Writes (height, width, 3) sRGB values as an 8-bit PNG. Throws Error{io}.
 void write_png_bytes(const std::string& path, std::size_t width, std::size_t height,
                      std::span<const std::uint8_t> bytes);

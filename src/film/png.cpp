@@ -20,8 +20,7 @@ std::vector<std::uint8_t> displayed(const Image& image, float exposure) {
   bytes.reserve(3 * colors.size());
   for (const Rgb& color : colors) {
     for (const float component : {color.x, color.y, color.z}) {
-      const float shown = srgb_from_linear(tone_map(component * scale));
-      bytes.push_back(static_cast<std::uint8_t>(std::lround(255 * shown)));
+      bytes.push_back(displayed_byte(component * scale));
     }
   }
   return bytes;
@@ -43,8 +42,13 @@ void write_png(const std::string& path, const Image& image, float exposure) {
 }
 
 std::vector<std::uint8_t> encode_png(const Image& image, float exposure) {
-  const std::vector<std::uint8_t> bytes = displayed(image, exposure);
-  png_image picture = described(image.width, image.height);
+  return encode_png_bytes(image.width, image.height, displayed(image, exposure));
+}
+
+std::vector<std::uint8_t> encode_png_bytes(std::size_t width, std::size_t height,
+                                           std::span<const std::uint8_t> bytes) {
+  assert(bytes.size() == 3 * width * height);
+  png_image picture = described(width, height);
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(picture);
   std::vector<std::uint8_t> file(size);
   if (png_image_write_to_memory(&picture, file.data(), &size, 0, bytes.data(), 0, nullptr) == 0) {

@@ -97,6 +97,10 @@ class PSF_API Dump {
   // passes. Throws as filter() does, and Error{usage} for sets of one block.
   [[nodiscard]] TuneResult tune(std::span<const Parameters> sets,
                                 const TuneOptions& options = {}) const;
+  // What psf ablate does, without a folder: the weights of `parameters` one after another, blocks
+  // against each other, iterations of one pass. Throws as filter() does.
+  [[nodiscard]] AblationResult ablate(const Parameters& parameters = {},
+                                      const AblateOptions& options = {}) const;
   // What psf explain does: a pixel, 0,0 at the top left, as filter() makes it. Throws as filter()
   // does, and Error{usage} for a pixel that the picture does not have, Error{bad_input} where no
   // path falls into the pixel.

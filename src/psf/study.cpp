@@ -3,20 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <mutex>
 
 #include "core/apart.h"
 #include "core/error.h"
-#include "core/json_text.h"
 #include "core/output_file.h"
 #include "metrics/reference.h"
 #include "psf/dump_state.h"
 #include "psf/library.h"
+#include "psf/study_parts.h"
 #include "psf/version.h"
-#include "run/missing_terms.h"
 #include "study/converge_file.h"
 #include "study/parameter_lists.h"
 #include "study/sweep.h"
@@ -24,57 +22,6 @@
 
 namespace psf {
 namespace {
-
-std::vector<filter::Parameters> to_filter(std::span<const Parameters> sets) {
-  std::vector<filter::Parameters> all;
-  for (const Parameters& set : sets) all.push_back(psf::to_filter(set));
-  return all;
-}
-
-// Switches off in `rows`, which are `sets`, what the dump lacks and was not asked for, and says so
-// in `notes`. Throws where what was asked for is missing.
-void fit(const run::Dump& dump, std::span<const Parameters> sets,
-         std::vector<filter::Parameters>& rows, std::vector<std::string>& notes) {
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const std::string note =
-        run::switch_off_missing(dump, {&rows[k], 1}, filter::asked_terms(sets[k].given()));
-    if (!note.empty() && std::find(notes.begin(), notes.end(), note) == notes.end()) {
-      notes.push_back(note);
-    }
-    static_cast<void>(dump.select(rows[k], false));
-  }
-}
-
-std::vector<filter::Parameters> fitted(const run::Dump& dump, std::span<const Parameters> sets,
-                                       std::vector<std::string>& notes) {
-  std::vector<filter::Parameters> rows = to_filter(sets);
-  fit(dump, sets, rows, notes);
-  return rows;
-}
-
-void check_camera(const run::Dump& dump, std::size_t camera) {
-  if (camera < dump.cameras().size()) return;
-  throw Error(ErrorCode::usage, fmt::format("`camera`: there is no camera {}", camera));
-}
-
-void check_reference(const Picture& reference, const run::Dump& dump, std::size_t camera) {
-  check_camera(dump, camera);
-  const filter::CameraView& view = dump.cameras()[camera];
-  if (reference.width == view.width && reference.height == view.height) return;
-  throw Error(ErrorCode::bad_input,
-              fmt::format("the reference has {} x {} pixels, the camera {} x {}", reference.width,
-                          reference.height, view.width, view.height));
-}
-
-// As its file is written.
-std::string file_text(const study::Json& json) {
-  return core::json_text(json, 1) + "\n";
-}
-
-// A name that holds when the working directory changes.
-std::string absolute(const std::string& path) {
-  return std::filesystem::absolute(path).string();
-}
 
 TuneRow to_row(const study::TuneRow& row) {
   return {filter::describe(row.parameters),
@@ -229,7 +176,7 @@ ConvergeResult converge(std::span<const std::string> dumps, const Picture& refer
 void ConvergeResult::save(const std::string& folder) const {
   const study::ConvergePaths paths(folder);
   core::check_apart(inputs, std::vector{paths.json, paths.csv});
-  check_none_there(paths);
+  study::check_none_there(paths.json);
   core::make_folder(folder);
   core::check_files(inputs, {paths.json, paths.csv});
   core::write_text_file(paths.csv, csv);

@@ -2,6 +2,7 @@
 // estimated how stands in src/study/README.md.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -73,6 +74,49 @@ struct TuneResult {
   std::vector<std::string> inputs;  // the files that it was made of
 
   // Writes `json` to a file, whole or not at all. Throws Error{usage} where that is one of
+  // `inputs`, Error{io}.
+  PSF_API void save(const std::string& path) const;
+};
+
+// How Dump::ablate() measures and shows.
+struct AblateOptions {
+  Passes passes;                            // the passes that are filtered
+  std::size_t camera = 0;                   // the picture's
+  std::optional<Picture> reference;         // what errors are against; not set: there are none
+  std::string metric = "relMSE";            // of metric_names(); the error on the sheet
+  double epsilon = 1e-2;                    // of the relative metrics
+  float exposure = 0;                       // of the sheet, SSIM and FLIP: stops
+  std::array<std::size_t, 4> crop = {};     // x, y, width, height on the sheet; all 0: everything
+  std::size_t columns = 5;                  // pictures beside each other on the sheet
+  std::optional<std::uint64_t> max_memory;  // bytes; where they do not suffice: Error{limit}
+  // Called now and then by the thread that works, with numbers of paths.
+  std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};
+};
+
+// A picture of Dump::ablate().
+struct AblationRow {
+  std::string part;            // "weights", "blocks", "iterations"
+  std::string label;           // "unfiltered", "+ normal 0.95", "2 blocks of 8 passes"
+  ParameterTexts parameters;   // empty where nothing is filtered
+  std::size_t first_pass = 0;  // of those it is made of
+  std::size_t passes = 0;      // their number
+  std::vector<std::pair<std::string, double>> errors;  // by metric; none without a reference
+  double mean = 0;                                     // luminance of the picture
+  double change = 0;     // of the mean, as a share of that of the same passes without filter
+  double neighbors = 0;  // mean over the queries
+  double seconds = 0;    // of the filter
+  Picture picture;       // R, G and B
+};
+
+// What Dump::ablate() measured.
+struct AblationResult {
+  std::vector<AblationRow> rows;    // the parts one after the other
+  std::vector<std::string> notes;   // what was switched off or left out, and why
+  std::string json;                 // the bytes of psf ablate --json, but for times
+  std::vector<unsigned char> png;   // the bytes of the sheet
+  std::vector<std::string> inputs;  // the files that it was made of
+
+  // Writes the sheet to a file, whole or not at all. Throws Error{usage} where that is one of
   // `inputs`, Error{io}.
   PSF_API void save(const std::string& path) const;
 };

@@ -1,6 +1,7 @@
 // Studies of dumps: sweep, tune, converge, explain. Figures are the JSON of the commands.
 #include <pybind11/stl.h>
 
+#include <array>
 #include <tuple>
 #include <vector>
 
@@ -32,6 +33,20 @@ py::dict to_dict(const TuneRow& row) {
   values["neighbors"] = row.neighbors;
   values["sigmas_above_least"] = row.sigmas_above_least;
   values["may_be_better"] = row.may_be_better;
+  return values;
+}
+py::dict to_dict(const AblationRow& row) {
+  py::dict values;
+  values["part"] = row.part;
+  values["label"] = row.label;
+  put(values, row.parameters);
+  values["first_pass"] = row.first_pass;
+  values["passes"] = row.passes;
+  for (const auto& [name, error] : row.errors) values[py::str(name)] = error;
+  values["mean"] = row.mean;
+  values["change"] = row.change;
+  values["neighbors"] = row.neighbors;
+  values["seconds"] = row.seconds;
   return values;
 }
 py::dict to_dict(const ConvergeRow& row) {
@@ -88,6 +103,19 @@ ConvergeResult converge(const std::vector<std::string>& dumps, const Picture& re
   });
 }
 
+AblationResult ablate(const Dump& dump, const Texts& given, bool no_weights,
+                      const PassRange& passes, std::size_t camera,
+                      const std::optional<Picture>& reference, const std::string& metric,
+                      double epsilon, float exposure, const std::array<std::size_t, 4>& crop,
+                      std::size_t columns, std::optional<std::uint64_t> max_memory,
+                      const py::object& progress) {
+  const Parameters parameters = parameters_of(given, no_weights);
+  return work_on(progress, [&](const auto& on_progress) {
+    return dump.ablate(parameters, {to_passes(passes), camera, reference, metric, epsilon, exposure,
+                                    crop, columns, max_memory, on_progress});
+  });
+}
+
 using Pixel = std::tuple<std::uint32_t, std::uint32_t>;
 Explanation explain(const Dump& dump, const std::optional<Pixel>& pixel, std::uint64_t path,
                     const Texts& given, bool no_weights, const PassRange& passes,
@@ -103,7 +131,7 @@ Explanation explain(const Dump& dump, const std::optional<Pixel>& pixel, std::ui
 }  // namespace
 
 void bind_studies(py::module_& m, py::class_<Dump>& dump) {
-  dump.def("sweep", sweep).def("tune", tune).def("explain", explain);
+  dump.def("sweep", sweep).def("tune", tune).def("ablate", ablate).def("explain", explain);
   m.def("converge", converge);
   py::class_<TuneResult>(m, "TuneResult")
       .def_readonly("json", &TuneResult::json)
@@ -111,6 +139,23 @@ void bind_studies(py::module_& m, py::class_<Dump>& dump) {
       .def_property_readonly("best", [](const TuneResult& result) { return result.best.given(); })
       .def_readonly("notes", &TuneResult::notes)
       .def("save", &TuneResult::save, py::call_guard<py::gil_scoped_release>());
+  py::class_<AblationResult>(m, "AblationResult")
+      .def_readonly("json", &AblationResult::json)
+      .def_property_readonly("rows",
+                             [](const AblationResult& result) { return to_list(result.rows); })
+      .def("take_pictures",
+           [](AblationResult& result) {
+             std::vector<Picture> pictures;
+             for (AblationRow& row : result.rows) pictures.push_back(std::move(row.picture));
+             return pictures;
+           })
+      .def_property_readonly("png",
+                             [](const AblationResult& result) {
+                               return py::bytes(reinterpret_cast<const char*>(result.png.data()),
+                                                result.png.size());
+                             })
+      .def_readonly("notes", &AblationResult::notes)
+      .def("save", &AblationResult::save, py::call_guard<py::gil_scoped_release>());
   py::class_<ConvergeResult>(m, "ConvergeResult")
       .def_readonly("json", &ConvergeResult::json)
       .def_property_readonly("rows",

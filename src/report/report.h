@@ -1,4 +1,4 @@
-// Makes one self-contained HTML file from folders that psf sweep and psf converge wrote.
+// Makes one self-contained HTML file from folders that psf sweep, converge and ablate wrote.
 #pragma once
 
 #include <cstddef>

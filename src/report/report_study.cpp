@@ -48,6 +48,25 @@ class Checker {
     return sorted();
   }
 
+  std::vector<StudyPicture> ablate() {
+    if (root_.member("metrics").size() > 0) metrics();
+    input(root_.member("input"));
+    reference();
+    const JsonPlace rows = root_.member("rows");
+    if (rows.size() == 0) rows.fail("at least one row");
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const JsonPlace row = rows.element(k);
+      const std::string id = new_id(row);
+      for (const char* name : {"part", "label"}) (void)row.member(name).text();
+      (void)row.member("passes").number();
+      if (const auto parameters = row.optional_member("parameters")) parameters->expect_texts();
+      row.member("metrics").expect_numbers();
+      for (const char* name : {"mean", "change", "neighbors", "seconds"}) row.optional_number(name);
+      add(id, row, 2, static_cast<double>(k));  // in their order: one follows from another
+    }
+    return sorted();
+  }
+
   std::vector<StudyPicture> converge() {
     metrics();
     const JsonPlace inputs = root_.member("inputs");
@@ -203,16 +222,19 @@ Study read_study(const std::string& folder, const std::string& kind) {
         fmt::format("{}, what this version of psf reads", study::kStudyFormat));
   }
   Checker checker(folder, root);
-  study.pictures = kind == "sweep" ? checker.sweep() : checker.converge();
+  study.pictures = kind == "sweep"      ? checker.sweep()
+                   : kind == "converge" ? checker.converge()
+                                        : checker.ablate();
 
   study.folder = name_of(fs::weakly_canonical(folder));
-  if (kind == "sweep") {
-    strip_folder(study.json["input"]);
-  } else {
+  const bool has_several = kind == "converge";
+  if (has_several) {
     for (study::Json& input : study.json["inputs"]) strip_folder(input);
+  } else {
+    strip_folder(study.json["input"]);
   }
   if (study.json.contains("reference")) strip_folder(study.json["reference"]);
-  const study::Json& input = kind == "sweep" ? study.json["input"] : study.json["inputs"][0];
+  const study::Json& input = has_several ? study.json["inputs"][0] : study.json["input"];
   study.scene = input["scene"].get<std::string>();
   study.dump = input["file"].get<std::string>();
   return study;
@@ -220,7 +242,7 @@ Study read_study(const std::string& folder, const std::string& kind) {
 
 std::vector<Study> studies_in(const std::string& folder) {
   std::vector<Study> studies;
-  for (const char* kind : {"sweep", "converge"}) {
+  for (const char* kind : {"sweep", "converge", "ablate"}) {
     if (fs::exists(fs::path(folder) / (std::string(kind) + ".json"))) {
       studies.push_back(read_study(folder, kind));
     }
@@ -242,10 +264,11 @@ std::vector<Study> read_studies(const std::string& folder) {
     for (Study& study : studies_in(one)) studies.push_back(std::move(study));
   }
   if (studies.empty()) {
-    throw Error(ErrorCode::io, folder +
-                                   ": has neither sweep.json nor converge.json; make one with psf "
-                                   "sweep or psf converge and -o " +
-                                   folder);
+    throw Error(ErrorCode::io,
+                folder +
+                    ": has no sweep.json, converge.json or ablate.json; make one with psf "
+                    "sweep, converge or ablate and -o " +
+                    folder);
   }
   return studies;
 }

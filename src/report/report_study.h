@@ -21,13 +21,14 @@ struct Study {
   std::string scene, dump;  // for the title
   study::Json json;         // as read, except that file names are without their folders
   // In the order of their importance: reference, unfiltered, the best row by the first metric, the
-  // next best, and so on; in a convergence study the last n comes before smaller ones.
+  // next best, and so on; in a convergence study the last n comes before smaller ones. Those of an
+  // ablation are in the order of its rows.
   std::vector<StudyPicture> pictures;
 };
 
-// Reads the studies of a folder: its sweep.json, its converge.json, or both in this order; where it
-// has neither, those of the folders in it, by name. Throws Error{io} where there is no study,
-// Error{bad_input} where a file is not what psf sweep or psf converge writes.
+// Reads the studies of a folder: its sweep.json, converge.json and ablate.json, in this order; where
+// it has none, those of the folders in it, by name. Throws Error{io} where there is no study,
+// Error{bad_input} where a file is not what psf sweep, converge or ablate writes.
 [[nodiscard]] std::vector<Study> read_studies(const std::string& folder);
 
 }  // namespace psf::report

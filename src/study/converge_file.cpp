@@ -4,9 +4,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <system_error>
-
-#include "core/error.h"
 
 namespace psf::study {
 namespace {
@@ -189,30 +186,11 @@ Json to_rows(const ConvergeReport& report) {
 }
 
 std::string to_csv(const ConvergeReport& report) {
-  std::string text;
-  const auto line = [&text](const Json& row, bool header) {
-    const char* separator = "";
-    for (const auto& [name, value] : row.items()) {
-      text += separator + (header ? name : csv_cell(value));
-      separator = ",";
-    }
-    text += "\n";
-  };
-  const Json rows = to_rows(report);
-  line(rows[0], true);
-  for (const Json& row : rows) line(row, false);
-  return text;
+  return csv_table(to_rows(report));
 }
 
 ConvergePaths::ConvergePaths(const std::string& folder)
     : json((std::filesystem::path(folder) / "converge.json").string()),
       csv((std::filesystem::path(folder) / "converge.csv").string()) {}
-
-void check_none_there(const ConvergePaths& paths) {
-  std::error_code error;
-  if (std::filesystem::exists(paths.json, error)) {
-    throw Error(ErrorCode::usage, paths.json + ": is there already; give another folder");
-  }
-}
 
 }  // namespace psf::study

@@ -63,7 +63,5 @@ struct ConvergePaths {
 
   std::string json, csv;
 };
-// A study that is there already stays: throws Error{usage} where the file `json` exists.
-void check_none_there(const ConvergePaths& paths);
 
 }  // namespace psf::study

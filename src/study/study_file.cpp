@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <system_error>
 
 #include "core/error.h"
 #include "core/json_text.h"
@@ -87,6 +89,27 @@ std::string csv_cell(const Json& value) {
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + "\"";
+}
+
+std::string csv_table(const Json& rows) {
+  std::string text;
+  const auto line = [&text](const Json& row, bool header) {
+    const char* separator = "";
+    for (const auto& [name, value] : row.items()) {
+      text += separator + (header ? name : csv_cell(value));
+      separator = ",";
+    }
+    text += "\n";
+  };
+  line(rows[0], true);
+  for (const Json& row : rows) line(row, false);
+  return text;
+}
+
+void check_none_there(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return;
+  throw Error(ErrorCode::usage, path + ": is there already; give another folder");
 }
 
 Json read_study_file(const std::string& path, const std::string& kind, const std::string& remedy) {

@@ -1,5 +1,5 @@
-// The common parts of the files of sweeps and convergence studies: descriptions of dump, reference
-// and metrics, and numbers in JSON.
+// The common parts of the files of studies: descriptions of dump, reference and metrics, and numbers
+// in JSON.
 #pragma once
 
 #include <cstddef>
@@ -44,6 +44,11 @@ inline constexpr int kStudyFormat = 1;  // raised where readers have to know of 
 
 // A value as a cell of a CSV table: quoted where it must be, empty for null.
 [[nodiscard]] std::string csv_cell(const Json& value);
+// Flat objects with the same names as a CSV table: a line of the names, and one for each.
+[[nodiscard]] std::string csv_table(const Json& rows);
+
+// A study that is there already stays: throws Error{usage} where the file exists.
+void check_none_there(const std::string& path);
 
 // Reads the file of a study. `kind`: for example "sweep"; `remedy`: the end of error messages.
 // Throws Error{bad_input} where the file is no JSON or has another kind or format, Error{io} where

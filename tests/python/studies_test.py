@@ -55,6 +55,31 @@ class Studies(unittest.TestCase):
         dump.filter(**tuning.best).save(self.file("p.exr"))
         self.assertEqual(content(self.file("c.exr")), content(self.file("p.exr")))
 
+    def test_ablate_gives_the_sheet_and_the_figures_of_the_command(self) -> None:
+        sheet, figures = self.file("parts.png"), self.file("parts.json")
+        run("psf", "ablate", self.paths[0], "--reference", self.reference, "--metric", "FLIP",
+            "--crop", "2,3,16x8", "--exposure", "1", "--normal", "0.9", "-o", sheet, "--json", figures)
+        dump = psf.open(self.paths[0])
+        study = dump.ablate(self.reference, metric="FLIP", crop=(2, 3, 16, 8), exposure=1,
+                            normal=0.9)
+        study.save(self.file("same.png"))
+        self.assertEqual(content(self.file("same.png")), content(sheet))
+        self.assertEqual(study._repr_png_(), content(sheet))
+        with open(figures, encoding="utf-8") as file:
+            expected = json.load(file)
+        got = dict(study)
+        for rows in (expected["rows"], got["rows"]):
+            for row in rows:
+                del row["seconds"]
+        self.assertEqual(got, expected)
+        self.assertEqual([row["label"] for row in study.rows],
+                         [row["label"] for row in expected["rows"]])
+        self.assertEqual(len(study.pictures), len(study.rows))
+        last = dump.filter(passes=1, iterations=8, normal=0.9)
+        self.assertTrue((study.pictures[-1].rgb == last.rgb).all())
+        assert_refused(self, lambda: dump.ablate(crop=(0, 0, 99, 1)), 2, "crop 0,0,99x1")
+        self.assertEqual(dict(dump.ablate())["metrics"], [])
+
     def test_converge_gives_the_files_of_the_command(self) -> None:
         run("psf", "converge", *self.paths, "--reference", self.reference, "--r0", "2px:8px:x2",
             "--normal", "0.9,off", "--no-times", "--quiet", "-o", self.file("command"))

@@ -290,9 +290,31 @@ TEST_CASE("a missing folder, study or picture is named") {
   };
   CHECK(message("none") == folder / "none" + ": is no folder");
   std::filesystem::create_directories(folder / "empty");
-  CHECK(message("empty").find("has neither sweep.json nor converge.json") != std::string::npos);
+  CHECK(message("empty").find("has no sweep.json, converge.json or ablate.json") !=
+        std::string::npos);
   write_sample(folder / "a", sample_sweep("room.json"));
   std::filesystem::remove(folder / "a/0006.exr");
   CHECK(message("a").starts_with(folder / "a/0006.exr: no such picture"));
   CHECK(!std::filesystem::exists(folder / "r.html"));
+}
+
+TEST_CASE("the pictures of an ablation keep the order of its rows, and it needs no reference") {
+  const TempFolder folder;
+  Json ablate = sample_ablate("room.json");
+  write_sample(folder / "parts", ablate);
+  const Page page = page_of({folder / "parts"});
+  CHECK(ids_of(page.data.at("sections").at(0)) ==
+        std::vector<std::string>{"reference", "0001", "0002", "0003", "0004", "0005", "0006",
+                                 "0007", "0008"});
+  ablate["reference"] = nullptr;
+  ablate["metrics"] = Json::array();
+  for (Json& row : ablate["rows"]) row["metrics"] = Json::object();
+  write_json(folder / "parts", ablate);
+  CHECK(ids_of(page_of({folder / "parts"}).data.at("sections").at(0)).front() == "0001");
+  ablate["rows"][3].erase("label");
+  write_json(folder / "parts", ablate);
+  CHECK(refusal(folder / "parts", folder / "r.html", ErrorCode::bad_input) ==
+        folder / "parts/ablate.json: /rows/3: expected \"label\" in it; write it anew with psf "
+                 "ablate -o " +
+            folder / "parts");
 }

@@ -90,6 +90,8 @@ inline const std::vector<std::string>& every_verb() {
       "psf converge IN/a.pvb --reference IN/a.exr --r0 4px,8px --pictures -o OUT/converge --json "
       "OUT/g.json",
       "psf tune IN/a.pvb --r0 4px,8px --block 1pass --json OUT/t.json",
+      "psf ablate IN/a.pvb --reference IN/a.exr -o OUT/a.png -o OUT/ablate --json OUT/a.json "
+      "--quiet",
       "psf explain IN/a.pvb --pixel 8,6 --json OUT/x.json --ply OUT/x.ply",
       "psf report IN/sweep -o OUT/r.html --json OUT/h.json"};
   return verbs;

@@ -82,10 +82,12 @@ std::string command(std::string verb, const TempFolder& folder, const std::strin
   put("<reference>", folder / "reference.exr");
   return "psf " + verb;
 }
-const std::array<const char*, 5> kVerbs = {
-    "filter <dump> -o <out>.exr", "tune <dump> --r0 2px,4px --json <out>.json",
+const std::array<const char*, 6> kVerbs = {
+    "filter <dump> -o <out>.exr",
+    "tune <dump> --r0 2px,4px --json <out>.json",
     "sweep <dump> --reference <reference> --r0 2px,4px -o <out>.s",
     "converge <dump> --reference <reference> --r0 2px -o <out>.c --no-times",
+    "ablate <dump> --reference <reference> -o <out>.png",
     "explain <dump> --pixel 3,4"};
 
 void write_reference(const TempFolder& folder) {
@@ -124,7 +126,8 @@ TEST_CASE("What cannot be done is one line: no note comes before it") {
         "filter <dump> -o <out>.exr --camera other", "tune <dump> --passes 0:99",
         "sweep <dump> --reference <reference> -o <out>.s --passes 0:99",
         "converge <dump> --reference <reference> -o <out>.c --passes 0:99",
-        "explain <dump> --pixel 99,4", "explain <dump> --pixel 3,4 --passes 0:99"}) {
+        "ablate <dump> -o <out>.png --passes 0:99", "explain <dump> --pixel 99,4",
+        "explain <dump> --pixel 3,4 --passes 0:99"}) {
     const Outcome outcome = run(command(verb, folder, folder / "a.pvb"));
     INFO(verb << ": " << outcome.err);
     CHECK(outcome.code == 2);

@@ -49,6 +49,8 @@ const std::vector<Clash> kClashes = {
      "--json OUT/a.json",
      "a.json"},
     {"psf tune OUT/a.pvb --r0 4px,8px --json OUT/a.pvb", "a.pvb"},
+    {"psf ablate OUT/a.pvb -o OUT/s.png --json OUT/a.pvb", "a.pvb"},
+    {"psf ablate OUT/a.pvb --reference OUT/study/0001.exr -o OUT/study", "study/0001.exr"},
     {"psf explain OUT/a.pvb --pixel 8,6 --json OUT/a.pvb", "a.pvb"},
     {"psf explain OUT/a.pvb --pixel 8,6 --ply OUT/a.pvb", "a.pvb"},
     {"psf report OUT/sweep -o OUT/sweep/sweep.json", "sweep/sweep.json"},
@@ -65,6 +67,8 @@ const std::vector<std::string> kTwice = {
     "psf compare OUT/a.exr OUT/sky.exr --error OUT/x.png --error OUT/study/../x.png",
     "psf sweep OUT/a.pvb --reference OUT/a.exr --r0 4px -o OUT/x --json OUT/x/sweep.json",
     "psf converge OUT/a.pvb --reference OUT/a.exr --r0 4px -o OUT/x --json OUT/x/converge.csv",
+    "psf ablate OUT/a.pvb -o OUT/x.png -o OUT/./x.png",
+    "psf ablate OUT/a.pvb -o OUT/x --json OUT/x/ablate.csv",
     "psf explain OUT/a.pvb --pixel 8,6 --json OUT/x --ply OUT/x",
     "psf report OUT/sweep -o OUT/x.html --json OUT/x.html"};
 
@@ -223,6 +227,7 @@ TEST_CASE("names that are no UTF-8, have spaces, backslashes or newlines are nam
     writes_json("psf converge " + dump + " --reference " + picture + " --r0 4px -o " +
                 quoted(".converge"));
     writes_json("psf tune " + dump + " --r0 4px,8px --block 1pass");
+    writes_json("psf ablate " + dump + " -o " + quoted(".sheet.png"));
     writes_json("psf explain " + dump + " --pixel 8,6 --ply " + quoted(".x.ply"));
     writes_json("psf report " + quoted(".sweep") + " " + quoted(".converge") + " -o " +
                 quoted(".html"));

@@ -9,5 +9,6 @@ int main(int, char** argv) {
   const std::string folder = argv[1];
   psf::tests::write_sample(folder + "/radii", psf::tests::sample_sweep(kHostile));
   psf::tests::write_sample(folder + "/rates", psf::tests::sample_converge("room.json"));
+  psf::tests::write_sample(folder + "/parts", psf::tests::sample_ablate("room.json"));
   return 0;
 }

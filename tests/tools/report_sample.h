@@ -1,4 +1,4 @@
-// Folders as psf sweep and psf converge write them, with values that are known in advance.
+// Folders as psf sweep, converge and ablate write them, with values that are known in advance.
 #pragma once
 
 #include <algorithm>
@@ -162,6 +162,41 @@ inline Json sample_converge(const std::string& scene) {
   return converge;
 }
 
+// Without filter 0.4, with weights 0.02 and 0.01; blocks 0.03 and 0.015; of one pass 4, iterations
+// 0.1 and 0.05.
+inline Json sample_ablate(const std::string& scene) {
+  Json ablate = sample_head("ablate");
+  ablate["input"] = sample_input(scene, 1);
+  ablate["rows"] = Json::array();
+  const auto add = [&](const char* part, const char* label, double error, int passes) {
+    const bool filtered = std::string(label) != "unfiltered";
+    const std::string id = "000" + std::to_string(ablate["rows"].size() + 1);
+    Json row = {{"id", id},
+                {"part", part},
+                {"label", label},
+                {"parameters", nullptr},
+                {"first_pass", 0},
+                {"passes", passes},
+                {"metrics", sample_metrics(error)},
+                {"mean", 0.25},
+                {"change", filtered ? -0.0012 : 0},
+                {"neighbors", filtered ? Json(50) : Json()},
+                {"seconds", filtered ? Json(0.5) : Json()},
+                {"picture", id + ".exr"}};
+    if (filtered) row["parameters"] = sample_parameters("8px", "0.333", "all");
+    ablate["rows"].push_back(row);
+  };
+  add("weights", "unfiltered", 0.4, 16);
+  add("weights", "no weights", 0.02, 16);
+  add("weights", "+ normal 0.95", 0.01, 16);
+  add("blocks", "16 blocks of 1 pass", 0.03, 16);
+  add("blocks", "1 block of 16 passes", 0.015, 16);
+  add("iterations", "unfiltered", 4, 1);
+  add("iterations", "iteration 1", 0.1, 1);
+  add("iterations", "iteration 2", 0.05, 1);
+  return ablate;
+}
+
 inline void write_json(const std::string& folder, const Json& study) {
   std::filesystem::create_directories(folder);
   std::ofstream(folder + "/" + study.at("kind").get<std::string>() + ".json") << study.dump(1);
@@ -176,8 +211,8 @@ inline void write_sample(const std::string& folder, const Json& study) {
     film::write_exr(folder + "/" + holder.at("picture").get<std::string>(),
                     sample_picture(scale, offset));
   };
-  if (study.at("kind") == "sweep") {
-    write(study.at("unfiltered"), 1, 0.5f);
+  if (study.at("kind") != "converge") {
+    if (study.contains("unfiltered")) write(study.at("unfiltered"), 1, 0.5f);
     float k = 0;
     for (const Json& row : study.at("rows")) write(row, 1 + ++k / 16, 0);
     return;

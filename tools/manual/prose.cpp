@@ -70,6 +70,13 @@ const std::map<std::string, const char*> kProse = {
      "Independent parts of the passes tell the error of each set of parameters: what one part "
      "gives filtered against what the others give without filter. It says when it is not sure of "
      "its choice. psf-filter(1) with --tuned takes what --json wrote."},
+    {"psf-ablate",
+     "One part adds the weights that are on one after another, from none to all; one filters the "
+     "passes as blocks of one, as two blocks and as one block; one filters the first pass alone, "
+     "which is one sample a pixel, one time to eight times. Each row is what psf-filter(1) and "
+     "psf-compare(1) give. A sheet shows all pictures with the same exposure, --crop a part of "
+     "them, enlarged where it is small. The folder gets ablate.json, ablate.csv and the pictures; "
+     "psf-report(1) makes a page of it."},
     {"psf-explain",
      "Lists the pixel's paths, whom they averaged, what each weight refused, and whence its "
      "light came: what each source adds beyond the mean of the pixel's own paths. Where the "

@@ -6,7 +6,6 @@
 #include <iterator>
 #include <memory>
 #include <optional>
-#include <regex>
 #include <string>
 #include <vector>
 
@@ -23,6 +22,7 @@
 #include "metrics/error_picture.h"
 #include "metrics/reference.h"
 #include "notes.h"
+#include "rectangle.h"
 #include "verbs.h"
 
 namespace psf::tools {
@@ -42,14 +42,9 @@ struct CompareOptions {
   CommonOptions common;
 };
 
-metrics::Region parse_region(const std::string& text, const film::Picture& picture) {
-  static const std::regex form(R"((\d{1,9}),(\d{1,9}),(\d{1,9})x(\d{1,9}))");
-  std::smatch parts;
-  if (!std::regex_match(text, parts, form)) {
-    throw Error(ErrorCode::usage, "--region " + text + ": no region, write X,Y,WxH in pixels");
-  }
-  const metrics::Region region = {std::stoul(parts[1]), std::stoul(parts[2]), std::stoul(parts[3]),
-                                  std::stoul(parts[4])};
+metrics::Region region_of(const std::string& text, const film::Picture& picture) {
+  const Rectangle given = parse_rectangle(text, "--region");
+  const metrics::Region region = {given.x, given.y, given.width, given.height};
   if (region.width == 0 || region.height == 0 || region.x + region.width > picture.width ||
       region.y + region.height > picture.height) {
     throw Error(ErrorCode::usage,
@@ -150,7 +145,7 @@ void run(const CompareOptions& options) {
   const std::string note = film::check_comparable(picture, reference);
   std::vector<metrics::Choice> choices;
   for (const std::string& text : options.regions) {
-    choices.push_back({parse_region(text, picture), report.trim});
+    choices.push_back({region_of(text, picture), report.trim});
     report.rows.push_back({text, {}});
   }
   if (choices.empty()) {

@@ -91,7 +91,7 @@ void run_dumps(const ConvergeOptions& options) {
   const run::Dump dump(options.inputs.front());
   std::vector<std::string> notes;
   const StudyFolder folder(options.study, dump, notes);
-  check_none_there(study::ConvergePaths(folder.path()));
+  study::check_none_there(study::ConvergePaths(folder.path()).json);
   if (folder.passes().first != 0) {
     throw Error(ErrorCode::usage, "--passes: a convergence study begins with the first pass");
   }
@@ -142,7 +142,7 @@ void check_analytic_files(const ConvergeOptions& options) {
   std::vector<std::string> outputs = {options.common.json};
   for (const study::AnalyticScene scene : kAnalyticScenes) {
     const study::ConvergePaths paths(analytic_folder(options, scene));
-    check_none_there(paths);
+    study::check_none_there(paths.json);
     outputs.insert(outputs.end(), {paths.json, paths.csv});
   }
   core::check_apart({}, outputs);

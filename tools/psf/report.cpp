@@ -1,4 +1,4 @@
-// psf report: a page to look at, from the folders of sweeps and convergence studies.
+// psf report: a page to look at, from the folders of studies.
 #include "report/report.h"
 
 #include <fmt/format.h>
@@ -31,9 +31,9 @@ struct ReportCommand {
 void add_files(const fs::path& folder, std::vector<std::string>& files) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const fs::path& path = entry.path();
-    if (path.extension() == ".exr" || path.stem() == "sweep" || path.stem() == "converge") {
-      files.push_back(path.string());
-    }
+    const fs::path name = path.stem();
+    const bool is_study = name == "sweep" || name == "converge" || name == "ablate";
+    if (is_study || path.extension() == ".exr") files.push_back(path.string());
   }
 }
 
@@ -78,10 +78,10 @@ void add_report(CLI::App& app) {
   auto options = std::make_shared<ReportCommand>();
   options->report.version = kVersion;
   CLI::App* command = app.add_subcommand(
-      "report", "make one HTML page of sweeps and convergence studies: maps, plots, pictures");
+      "report", "make one HTML page of sweeps, convergence studies and ablations");
   command
       ->add_option("DIR", options->folders,
-                   "folders that psf sweep or psf converge wrote, or a folder of such")
+                   "folders that psf sweep, converge or ablate wrote, or a folder of such")
       ->required()
       ->type_name("DIR");
   command->add_option("-o,--output", options->output, "the page")

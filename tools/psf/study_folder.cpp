@@ -61,6 +61,49 @@ std::size_t find_camera(const run::Dump& dump, const std::string& name) {
                           fmt::join(names, ", ")));
 }
 
+film::Picture read_reference(const std::string& path, const std::string& layer,
+                             const run::Dump& dump, std::size_t camera,
+                             std::vector<std::string>& notes) {
+  film::Picture image = film::read_picture(path, {layer, "", "`reference-layer`"});
+  const filter::CameraView& view = dump.cameras()[camera];
+  if (image.width != view.width || image.height != view.height) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: is {}x{}, the camera's picture in {} {}x{}; give a reference of "
+                            "its size",
+                            path, image.width, image.height, dump.reader().path(), view.width,
+                            view.height));
+  }
+  film::Picture picture;
+  picture.width = image.width;
+  picture.height = image.height;
+  picture.left = image.left;
+  picture.top = image.top;
+  picture.path = dump.reader().path();
+  const std::string note = film::check_comparable(image, picture);
+  notes.insert(notes.end(), image.notes.begin(), image.notes.end());
+  if (!note.empty()) notes.push_back(note);
+  return image;
+}
+
+void write_study_picture(const std::string& path, std::size_t width, std::size_t height,
+                         std::span<const Rgb> picture,
+                         const std::optional<filter::Parameters>& parameters) {
+  film::Image image;
+  image.width = width;
+  image.height = height;
+  std::vector<float> values;
+  values.reserve(3 * picture.size());
+  for (const Rgb& value : picture) values.insert(values.end(), {value.x, value.y, value.z});
+  image.add("", "RGB", values);
+  image.attributes.emplace_back("psf:version", kVersion);
+  if (parameters) {
+    for (const auto& [option, value] : filter::describe(*parameters)) {
+      image.attributes.emplace_back("psf:" + option, value);
+    }
+  }
+  film::write_exr(path, image);
+}
+
 StudyFolder::StudyFolder(const StudyOptions& options, const run::Dump& dump,
                          std::vector<std::string>& notes)
     : options_(options),
@@ -69,24 +112,7 @@ StudyFolder::StudyFolder(const StudyOptions& options, const run::Dump& dump,
       camera_(find_camera(dump, options.camera)) {
   options_.metrics.validate();
   film::Picture image =
-      film::read_picture(options_.reference, {options_.reference_layer, "", "`reference-layer`"});
-  const filter::CameraView& view = dump.cameras()[camera_];
-  if (image.width != view.width || image.height != view.height) {
-    throw Error(ErrorCode::bad_input,
-                fmt::format("{}: is {}x{}, the camera's picture in {} {}x{}; give a reference of "
-                            "its size",
-                            options_.reference, image.width, image.height, dump.reader().path(),
-                            view.width, view.height));
-  }
-  film::Picture camera;
-  camera.width = image.width;
-  camera.height = image.height;
-  camera.left = image.left;
-  camera.top = image.top;
-  camera.path = dump.reader().path();
-  const std::string note = film::check_comparable(image, camera);
-  notes.insert(notes.end(), image.notes.begin(), image.notes.end());
-  if (!note.empty()) notes.push_back(note);
+      read_reference(options_.reference, options_.reference_layer, dump, camera_, notes);
   reference_ = std::move(image.colors);
   width_ = image.width;
   height_ = image.height;
@@ -121,20 +147,7 @@ void StudyFolder::write_reference() const {
 
 void StudyFolder::write(const std::string& name, std::span<const Rgb> picture,
                         const std::optional<filter::Parameters>& parameters) const {
-  film::Image image;
-  image.width = width_;
-  image.height = height_;
-  std::vector<float> values;
-  values.reserve(3 * picture.size());
-  for (const Rgb& value : picture) values.insert(values.end(), {value.x, value.y, value.z});
-  image.add("", "RGB", values);
-  image.attributes.emplace_back("psf:version", kVersion);
-  if (parameters) {
-    for (const auto& [option, value] : filter::describe(*parameters)) {
-      image.attributes.emplace_back("psf:" + option, value);
-    }
-  }
-  film::write_exr(file(name), image);
+  write_study_picture(file(name), width_, height_, picture, parameters);
 }
 
 }  // namespace psf::tools

@@ -1,5 +1,5 @@
-// The common parts of psf sweep and psf converge: a reference to measure against, and a folder for
-// the results.
+// The common parts of psf sweep, converge and ablate: a reference to measure against, and a folder
+// for the results.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/vec.h"
+#include "film/picture.h"
 #include "filter/parameters/parameters.h"
 #include "metrics/metrics.h"
 #include "run/dump.h"
@@ -68,5 +69,16 @@ class StudyFolder {
 
 // The number of the camera called `name`, or of the only camera where `name` is empty.
 [[nodiscard]] std::size_t find_camera(const run::Dump& dump, const std::string& name);
+
+// Reads a reference for the pictures of a camera, and adds remarks about it to `notes`. Throws
+// Error{bad_input} where it has another size or shows another place.
+[[nodiscard]] film::Picture read_reference(const std::string& path, const std::string& layer,
+                                           const run::Dump& dump, std::size_t camera,
+                                           std::vector<std::string>& notes);
+
+// Writes a picture as EXR, with `parameters`, if given, as its attributes.
+void write_study_picture(const std::string& path, std::size_t width, std::size_t height,
+                         std::span<const Rgb> picture,
+                         const std::optional<filter::Parameters>& parameters);
 
 }  // namespace psf::tools

@@ -26,6 +26,7 @@ void declare_psf(CLI::App& app) {
   add_sweep(app);
   add_converge(app);
   add_tune(app);
+  add_ablate(app);
   add_explain(app);
 #ifdef PSF_WITH_REPORT
   add_report(app);

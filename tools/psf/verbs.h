@@ -7,6 +7,7 @@ namespace psf::tools {
 
 void declare_psf(CLI::App& app);  // all of it
 
+void add_ablate(CLI::App& app);
 void add_cat(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_converge(CLI::App& app);

@@ -23,12 +23,13 @@ from psf._picture import Picture, read_picture
 from psf._psf import Camera, Channel, Error
 from psf._records import FilteredRecords, filter_records
 from psf._rendering import render, render_picture, render_settings
-from psf._studies import Convergence, Explanation, Figures, Tuning, converge
+from psf._studies import Ablation, Convergence, Explanation, Figures, Tuning, converge
 from psf._writer import DumpWriter, create
 
 __version__: str = _psf.version
 __all__ = [
-    "Camera", "Channel", "Convergence", "Dump", "DumpWriter", "Error", "Explanation", "Figures",
+    "Ablation", "Camera", "Channel", "Convergence", "Dump", "DumpWriter", "Error", "Explanation",
+    "Figures",
     "FilteredRecords", "Parameter", "Picture", "Tuning", "converge", "create", "filter_records",
     "geomspace", "metrics", "open", "parameters", "read_picture", "render",
     "render_picture", "render_settings",

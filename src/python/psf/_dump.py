@@ -12,7 +12,7 @@ from psf import _psf
 from psf._picture import Picture, as_picture
 from psf._progress import Progress, shown
 from psf._psf import Camera, Channel
-from psf._studies import Explanation, Tuning, camera_number, warn
+from psf._studies import Ablation, Explanation, Tuning, camera_number, warn
 from psf._values import (FileName, Passes, Value, file_name, items, lists, pass_range, real, text,
                          texts, whole, whole_or_none, with_underscores, wrong)
 
@@ -152,6 +152,32 @@ class Dump:
                 whole_or_none("max_memory", max_memory), report)
         warn(result.notes)
         return Tuning(result)
+
+    def ablate(self, reference: Picture | FileName | None = None, *, metric: str = "relMSE",
+               epsilon: float = 0.01, exposure: float = 0,
+               crop: tuple[int, int, int, int] | None = None, columns: int = 5,
+               camera: str | None = None, passes: Passes = None, max_memory: int | None = None,
+               no_weights: bool = False, progress: Progress = None,
+               **parameters: Value) -> Ablation:
+        """What ``psf ablate`` does: the weights one after another, blocks against each other, and
+        iterations of one pass.
+
+        ``metric``: the error on the sheet; ``exposure``: stops; ``crop``: the part of the pictures
+        that the sheet shows, (x, y, width, height), with ``columns`` beside each other.
+        """
+        picture = None if reference is None else as_picture("reference", reference)._picture
+        place = [whole("crop", one, 1 << 32) for one in items(crop or (0, 0, 0, 0))]
+        if len(place) != 4:
+            raise wrong("crop", "(x, y, width, height)", crop)
+        with shown(progress, "ablate") as report:
+            result = self._dump.ablate(
+                texts(parameters), no_weights, pass_range(passes, self.passes),
+                camera_number(self, camera), picture, text("metric", metric),
+                real("epsilon", epsilon), real("exposure", exposure),
+                (place[0], place[1], place[2], place[3]), whole("columns", columns, 1 << 32),
+                whole_or_none("max_memory", max_memory), report)
+        warn(result.notes)
+        return Ablation(result)
 
     def explain(self, pixel: tuple[int, int] | None = None, *, path: int | None = None,
                 camera: str | None = None, passes: Passes = None, no_weights: bool = False,

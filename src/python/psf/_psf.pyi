@@ -123,6 +123,21 @@ class Dump:
         max_memory: int | None,
         progress: Callable[[int, int], object] | None,
     ) -> TuneResult: ...
+    def ablate(
+        self,
+        given: Mapping[str, str],
+        no_weights: bool,
+        passes: tuple[int, int | None],
+        camera: int,
+        reference: Picture | None,
+        metric: str,
+        epsilon: float,
+        exposure: float,
+        crop: tuple[int, int, int, int],
+        columns: int,
+        max_memory: int | None,
+        progress: Callable[[int, int], object] | None,
+    ) -> AblationResult: ...
     def explain(
         self,
         pixel: tuple[int, int] | None,
@@ -141,6 +156,18 @@ class TuneResult:
     def rows(self) -> list[dict[str, Any]]: ...
     @property
     def best(self) -> dict[str, str]: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def save(self, path: str) -> None: ...
+
+class AblationResult:
+    @property
+    def json(self) -> str: ...
+    @property
+    def rows(self) -> list[dict[str, Any]]: ...
+    def take_pictures(self) -> list[Picture]: ...
+    @property
+    def png(self) -> bytes: ...
     @property
     def notes(self) -> list[str]: ...
     def save(self, path: str) -> None: ...

@@ -61,6 +61,31 @@ class Tuning(Figures):
         return f"<psf.Tuning of {len(self.rows)} sets, {'sure' if self['sure'] else 'not sure'}>"
 
 
+class Ablation(Figures):
+    """What Dump.ablate() gives: the figures of ``psf ablate --json``. It shows itself in a notebook
+    as the sheet of all pictures with their labels.
+
+    ``rows``: a flat dict for each picture; pandas.DataFrame() takes it. ``pictures``: in the order
+    of the rows.
+    """
+
+    def __init__(self, result: _psf.AblationResult) -> None:
+        super().__init__(result.json)
+        self._result = result
+        self.rows = [with_underscores(row) for row in result.rows]
+        self.pictures = [Picture(picture) for picture in result.take_pictures()]
+
+    def save(self, path: FileName) -> None:
+        """Writes the sheet, the bytes of ``psf ablate -o sheet.png``."""
+        self._result.save(file_name("path", path))
+
+    def _repr_png_(self) -> bytes:
+        return self._result.png
+
+    def __repr__(self) -> str:
+        return f"<psf.Ablation of {len(self.rows)} pictures>"
+
+
 class Convergence(Figures):
     """What converge() gives: the figures of converge.json.
 

@@ -5,9 +5,9 @@
   const sections = report.sections, host = document.getElementById('studies');
   const contents = document.getElementById('contents');
   document.getElementById('brand').textContent = `psf ${report.version}`;
+  const names = {sweep: 'Sweep', converge: 'Convergence', ablate: 'Ablation'};
   sections.forEach(
-      (section) => section.heading =
-          `${section.study.kind === 'sweep' ? 'Sweep' : 'Convergence'}: ${section.folder}`);
+      (section) => section.heading = `${names[section.study.kind]}: ${section.folder}`);
   const pictures = listPictures(sections);
   let viewer = null, sheet = null;
 
@@ -32,10 +32,8 @@
         make('h2', {id: `${id}-heading`}, section.heading));
     host.append(element);
     contents.append(make('a', {href: `#${id}`}, section.heading));
-    if (section.study.kind === 'sweep')
-      makeSweep(section, element, open);
-    else
-      makeConverge(section, element);
+    const fill = {sweep: makeSweep, converge: makeConverge, ablate: makeAblation};
+    fill[section.study.kind](section, element, open);
   });
 
   const leftOut = d3.sum(sections, (section) => section.left_out);

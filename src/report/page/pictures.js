@@ -11,7 +11,7 @@ function epsilonOf(metric) {
 function listPictures(sections) {
   return sections.flatMap((section) => {
     const {study, pictures} = section, metrics = metricsOf(study), metric = metrics[0];
-    const holders = study.kind === 'sweep' ? study.rows : study.series;
+    const holders = study.kind === 'converge' ? study.series : study.rows;
     const varying = parametersOf(holders).filter((p) => p.values.length > 1).map((p) => p.name);
     const relative = metrics.find((one) => one.name === 'relMSE');
     const list = pictures.map((stored) => {
@@ -19,6 +19,7 @@ function listPictures(sections) {
       const point = stored.point === null ? null : row.points[stored.point];
       const measured = point || row || (stored.id === 'unfiltered' ? study.unfiltered : null);
       const name = stored.id === 'reference' ? 'reference' :
+          study.kind === 'ablate'            ? ablationLabel(row) :
           row && row.parameters              ? rowText(row, varying) :
                                                'unfiltered';
       return {
@@ -26,8 +27,9 @@ function listPictures(sections) {
         stored,
         row,
         label: point ? `${name} \u00b7 n ${formatCount(point.n)}` : name,
-        detail: measured ? `${metric.name} ${formatNumber(metricValue(measured, metric))}` :
-                           'what the errors are against',
+        detail: !measured ? 'what the errors are against' :
+            metric        ? `${metric.name} ${formatNumber(metricValue(measured, metric))}` :
+                            `mean ${formatNumber(measured.mean)}`,
         epsilon: epsilonOf(relative),
       };
     });

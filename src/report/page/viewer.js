@@ -3,7 +3,7 @@
 
 // To start with: unfiltered and the best, which follows it.
 function firstPair(pictures) {
-  const a = Math.max(0, pictures.findIndex((picture) => picture.stored.id === 'unfiltered'));
+  const a = Math.max(0, pictures.findIndex((picture) => picture.label.startsWith('unfiltered')));
   return {a: pictures[a], b: pictures[Math.min(a + 1, pictures.length - 1)]};
 }
 

@@ -47,8 +47,8 @@ class PageTest(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory(prefix='psf-report-')
         out = pathlib.Path(cls.folder.name) / 'report.html'
         subprocess.run([sample, cls.folder.name], check=True)
-        subprocess.run([psf, 'report', cls.folder.name + '/radii', cls.folder.name + '/rates', '-o', str(out),
-                        '--quiet'], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([psf, 'report', cls.folder.name + '/radii', cls.folder.name + '/rates',
+                        cls.folder.name + '/parts', '-o', str(out), '--quiet'], check=True, stdout=subprocess.DEVNULL)
         cls.url = out.as_uri()
         cls.page = chromium.Chromium()
 

@@ -12,7 +12,7 @@ class Texts(PageTest):
         self.assertTrue(self.page.run('document.title').startswith('</script><script>window.hacked = 1'))
         self.assertTrue(self.page.run('document.title').endswith(
             'room.pvb, room.json \u2013 room.pvb \u00b7 psf 0.1.0'))
-        self.assertEqual(self.texts('h2'), ['Sweep: radii', 'Convergence: rates', 'Pictures'])
+        self.assertEqual(self.texts('h2'), ['Sweep: radii', 'Convergence: rates', 'Ablation: parts', 'Pictures'])
 
     def test_texts_of_files_are_texts(self):
         self.assertEqual(self.page.run('typeof window.hacked'), 'undefined')
@@ -198,3 +198,40 @@ class Converge(PageTest):
         self.assertEqual(self.page.run('document.querySelectorAll("#study-1 details:last-child tbody tr").length'), 12)
         self.assertEqual(self.text('.verdict b'), 'The slopes agree with theory.')
         self.assertEqual(self.texts('.verdict tbody tr'), ['\u03b4 0.5bias\u00b2\u22121.04\u22121.00agrees'])
+
+
+class Ablation(PageTest):
+    def rows(self, table):
+        return self.page.run(f'''[...document.querySelectorAll("#study-2 table")[{table}].querySelectorAll("tbody tr")]
+            .map((r) => [...r.cells].map((c) => c.textContent))''')
+
+    def test_a_table_for_each_part(self):
+        self.assertEqual(self.texts('#study-2 h3'),
+                         ['Weights one after another', 'Blocks filtered apart', 'Iterations on one pass'])
+        weights = self.rows(0)
+        self.assertEqual([row[0] for row in weights], ['unfiltered, 16 passes', 'no weights', '+ normal 0.95'])
+        self.assertEqual([row[1] for row in weights], ['0.400', '0.0200', '0.0100'])
+        self.assertEqual([row[2] for row in weights], ['\u2013', '20.0', '40.0'])
+        self.assertEqual(weights[1][4], '\u22120.12\u202f%')
+        # Each against the same passes without filter.
+        self.assertEqual([row[2] for row in self.rows(1)], ['13.3', '26.7'])
+        self.assertEqual([row[2] for row in self.rows(2)], ['\u2013', '40.0', '80.0'])
+        self.assertEqual(self.texts('#study-2 tr.best td:first-child'),
+                         ['+ normal 0.95', '1 block of 16 passes', 'iteration 2'])
+
+    def test_bars_are_shares_of_the_largest_filtered_error(self):
+        widths = self.page.run('''[...document.querySelectorAll("#study-2 .bar-fill")].map((e) =>
+            Math.round(100 * e.getBoundingClientRect().width / e.parentElement.getBoundingClientRect().width))''')
+        self.assertEqual(widths, [100, 100, 50, 100, 50, 100, 100, 50])
+        self.assertEqual(self.page.run('document.querySelectorAll("#study-2 .bar-fill.beyond").length'), 2)
+
+    def test_metrics(self):
+        self.choose('Metric', 'PSNR', '#study-2')
+        self.assertEqual(self.rows(0)[2][1], '39.0')
+        self.choose('Metric', 'FLIP', '#study-2')
+        self.assertEqual(self.page.run('document.querySelectorAll("#study-2 tr.best").length'), 0)
+
+    def test_pictures_have_the_labels(self):
+        cards = self.texts('.sheet:last-child .card-name')
+        self.assertEqual(cards[:3], ['reference', 'unfiltered, 16 passes', 'no weights'])
+        self.assertEqual(cards[-3:], ['unfiltered, 1 pass', 'iteration 1', 'iteration 2'])
