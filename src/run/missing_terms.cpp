@@ -24,7 +24,10 @@ std::string switch_off_missing(const Dump& dump, std::span<filter::Parameters> s
     }
   }
   if (terms.empty()) return "";
-  return fmt::format("{}: has no channel {}, so {} {} off", dump.reader().path(),
+  const std::string what =
+      dump.vertex_rule() ? fmt::format("the vertices of {} have", to_text(*dump.vertex_rule()))
+                         : "has";
+  return fmt::format("{}: {} no channel {}, so {} {} off", dump.reader().path(), what,
                      fmt::join(channels, ", "), fmt::join(terms, ", "),
                      terms.size() == 1 ? "is" : "are");
 }
