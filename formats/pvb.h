@@ -124,7 +124,7 @@ typedef struct pvb_channel {
 #define PVB_FILM {"film", PVB_F32, 2, PVB_PLAIN}                    // pixels, y down
 #define PVB_LENS {"lens", PVB_F32, 2, PVB_PLAIN}                    // of the unit disk
 #define PVB_TIME {"time", PVB_F32, 1, PVB_PLAIN}                    // in [0, 1], of the shutter
-#define PVB_FRAME {"frame", PVB_U32, 1, PVB_PLAIN}
+#define PVB_FRAME {"frame", PVB_U32, 1, PVB_PLAIN}                  // of a sequence, from 0
 #define PVB_ALPHA {"alpha", PVB_F32, 1, PVB_PLAIN}                  // coverage: 0 background
 #define PVB_KIND {"kind", PVB_U8, 1, PVB_PLAIN}                     // 0 surface 1 curve 2 volume
 
@@ -181,7 +181,7 @@ typedef struct pvb_file pvb_file;
 
 // What a file holds of a table.
 typedef struct pvb_table_info {
-  const char* name;
+  const char* name;             // as declared
   uint64_t records;             // committed
   uint32_t chunk_capacity;      // most records per chunk
   const pvb_channel* channels;  // in the order of the file
@@ -252,10 +252,12 @@ pvb_file* pvb_create(const char* path, const pvb_channel* channels, size_t chann
 pvb_file* pvb_resume(const char* path, const pvb_channel* channels, size_t channel_count,
                      const char* metadata, const pvb_options* options);
 
-// The same with tables, at most 16. On resuming, their names and channels must be the same, too.
+// Starts a file that has tables beside the paths, at most 16.
 pvb_file* pvb_create_with(const char* path, const pvb_channel* channels, size_t channel_count,
                           const pvb_table* tables, size_t table_count, const char* metadata,
                           const pvb_options* options);
+
+// Goes on with a file that has tables. Their names and channels must be the same, too.
 pvb_file* pvb_resume_with(const char* path, const pvb_channel* channels, size_t channel_count,
                           const pvb_table* tables, size_t table_count, const char* metadata,
                           const pvb_options* options);
@@ -291,12 +293,16 @@ int pvb_pass(pvb_file* file, uint64_t pass, uint64_t* first, uint64_t* count);
 int pvb_read(pvb_file* file, size_t channel, uint64_t first, size_t count, void* out,
              size_t stride);
 
-// Index of a table in pvb_about()->tables, or -1; and of a channel in that table's channels, or -1.
+// Index of a table in pvb_about()->tables, or -1.
 int pvb_find_table(const pvb_file* file, const char* table);
+
+// Index of a channel in the channels of a table, or -1.
 int pvb_find_in(const pvb_file* file, size_t table, const char* channel);
 
-// pvb_pass() and pvb_read() for a table: its records are counted from 0.
+// pvb_pass() for a table, whose records are counted from 0.
 int pvb_pass_of(pvb_file* file, size_t table, uint64_t pass, uint64_t* first, uint64_t* count);
+
+// pvb_read() for a table.
 int pvb_read_from(pvb_file* file, size_t table, size_t channel, uint64_t first, size_t count,
                   void* out, size_t stride);
 

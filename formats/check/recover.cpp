@@ -13,7 +13,7 @@
 #include "formats/check/check_frames.h"
 #include "formats/check/column_reader.h"
 #include "formats/check/restore_head.h"
-#include "formats/check/table_passes.h"
+#include "formats/check/table_recovery.h"
 #include "formats/check/walk.h"
 #include "formats/layout/chunk.h"
 #include "formats/layout/file.h"
@@ -110,8 +110,11 @@ class Recovery {
   }
 
   void copy_chunks(const std::function<void(std::uint64_t, std::uint64_t)>& progress) {
-    tables_ = table_passes(walk_);
     ColumnReader reader(file_, walk_);
+    TableRecovery tables(walk_, reader, *appender_);
+    const auto copy_tables = [&](std::uint32_t of) {
+      if (!broken_.contains(of)) report_.chunks_saved += tables.save(of, report_.faults);
+    };
     std::uint64_t next = 0, number = 0;  // record, chunk
     std::uint32_t before = 0;            // pass of the chunk before
     // That of the last chunk that was saved, and the same until its tables are.
@@ -132,7 +135,7 @@ class Recovery {
       next = entry.first + entry.count;
       before = entry.pass;
       if (unfinished && *unfinished != entry.pass) {
-        copy_tables(*unfinished, reader);
+        copy_tables(*unfinished);
         unfinished.reset();
       }
       if (!is_saved(walked, number++, reader)) continue;
@@ -146,8 +149,10 @@ class Recovery {
       lose_range(next, total, walk_.end);
       broken_.insert(before);
     }
-    if (unfinished) copy_tables(*unfinished, reader);
-    lose_table_passes();
+    if (unfinished) copy_tables(*unfinished);
+    for (Fault& loss : tables.losses(broken_, options_.uncommitted)) lose(std::move(loss));
+    std::stable_sort(report_.losses.begin(), report_.losses.end(),
+                     [](const Fault& x, const Fault& y) { return x.offset < y.offset; });
   }
 
   // Whether a chunk of the paths, whose columns `reader` then has, can be saved.
@@ -167,66 +172,6 @@ class Recovery {
                                  entry.count,
                                  "its frame cannot be read"});
     return false;
-  }
-
-  // Saves the records that tables have of a pass whose paths are all saved: each table's as a whole
-  // or not at all, README.md, "Recovery".
-  void copy_tables(std::uint32_t pass, ColumnReader& reader) {
-    if (broken_.contains(pass)) return;
-    for (std::size_t k = 0; k < tables_.size(); ++k) {
-      const auto found = tables_[k].passes.find(pass);
-      if (found == tables_[k].passes.end() || !is_whole(found->second, reader)) continue;
-      for (const TablePass::Numbered& of : found->second.chunks) {
-        static_cast<void>(reader.read(of.chunk, of.number));
-        appender_->add_chunk(k + 1, of.chunk.entry.count, reader.columns());
-        ++report_.chunks_saved;
-      }
-      found->second.taken = true;
-    }
-  }
-
-  // Whether all columns of it are, too. What is wrong is added to the report.
-  bool is_whole(const TablePass& pass, ColumnReader& reader) {
-    bool whole = pass.whole;
-    for (const TablePass::Numbered& of : pass.chunks) {
-      if (!of.chunk.readable) continue;
-      const std::vector<Fault> faults = reader.read(of.chunk, of.number);
-      report_.faults.insert(report_.faults.end(), faults.begin(), faults.end());
-      whole = whole && faults.empty();
-    }
-    return whole;
-  }
-
-  void lose_table_passes() {
-    for (std::size_t k = 0; k < tables_.size(); ++k) {
-      for (Fault& gap : tables_[k].gaps) lose(std::move(gap));
-      for (const auto& [number, pass] : tables_[k].passes) {
-        if (!pass.taken && !is_unfinished(number)) lose_table_pass(k, number, pass);
-      }
-    }
-    std::stable_sort(report_.losses.begin(), report_.losses.end(),
-                     [](const Fault& a, const Fault& b) { return a.offset < b.offset; });
-  }
-
-  // Whether it was asked for although it is not committed, so that nothing is lost with it.
-  [[nodiscard]] bool is_unfinished(std::uint32_t pass) const {
-    return options_.uncommitted &&
-           (walk_.commits.empty() || pass >= walk_.commits.back().commit.passes);
-  }
-
-  void lose_table_pass(std::size_t table, std::uint32_t number, const TablePass& pass) {
-    const ChunkEntry &first = pass.chunks.front().chunk.entry,
-                     &last = pass.chunks.back().chunk.entry;
-    lose({first.offset,
-          type_name(kTableChunkType),
-          pass.chunks.front().number,
-          {},
-          first.first,
-          last.first + last.count - first.first,
-          fmt::format(
-              "pass {} of it is left out: {}", number,
-              broken_.contains(number) ? "paths of this pass are lost" : "a part of it is lost"),
-          walk_.head.head.tables[table].name});
   }
 
   void lose_range(std::uint64_t first, std::uint64_t last, std::uint64_t before) {
@@ -318,7 +263,6 @@ class Recovery {
   std::uint64_t committed_ = 0;  // see committed_end()
   std::uint64_t limit_ = 0;      // what lies from here on is not taken
   std::unique_ptr<Appender> appender_;
-  std::vector<TablePasses> tables_;
   std::set<std::uint32_t> broken_;  // passes of which paths are lost
   RecoverResult report_;
 };
