@@ -23,6 +23,7 @@ struct ChannelSet {
   std::optional<std::size_t> flags, position, distance, throughput, contribution, unfiltered, pixel,
       camera, normal, reflectance, visibility, hit_distance, direction, material, roughness;
   std::vector<LightLayer> layers;
+  std::optional<PhotonChannels> photons;
 };
 
 class Dump {
@@ -49,7 +50,7 @@ class Dump {
 
   // The channels that `parameters` use; with `guides`, also normal and reflectance where the file
   // has them. Throws Error{bad_input} that names a channel that is missing or has another type, and
-  // what needs it.
+  // what needs it, or photons.
   [[nodiscard]] ChannelSet select(const filter::Parameters& parameters, bool guides) const;
 
   // Reads the paths [range.first, range.last), columns in parallel. What of a layer of the light is
