@@ -14,7 +14,8 @@ void require_channels(const Records& records, const Parameters& parameters) {
   const EstimatorInfo& estimator = info(parameters.estimator);
   if (estimator.is_of_photons && records.photons.passes == 0) {
     throw Error(ErrorCode::bad_input, "the records have no photons, which `estimator " +
-                                          std::string(estimator.name) + "` needs");
+                                          std::string(estimator.name) +
+                                          "` needs; only a dump has them");
   }
   for (const ChannelNeed& need : optional_channels(parameters)) {
     if (has_channel(records, need.channel)) continue;

@@ -247,8 +247,9 @@ TEST_CASE("What density cannot do is refused in one line that names the option")
   starts([](Parameters& p) { p.sources = 2; }, "`sources`:");
   PhotonSet none(0);
   none.passes = 0;
-  CHECK_THROWS_WITH(tests::run_density(set, none, tests::density_parameters(terms_of_bits(0), 0.1)),
-                    "the records have no photons, which `estimator density` needs");
+  CHECK_THROWS_WITH(
+      tests::run_density(set, none, tests::density_parameters(terms_of_bits(0), 0.1)),
+      "the records have no photons, which `estimator density` needs; only a dump has them");
 }
 
 }  // namespace
