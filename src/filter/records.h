@@ -26,8 +26,7 @@ struct Photons {
   std::span<const Vec3> position;   // x_p, world units
   std::span<const Vec3> normal;     // n_p, unit, on the side of the light
   std::span<const Vec3> direction;  // omega_p, unit, toward where the light came from
-  std::span<const Rgb>
-      power;  // Phi_p, flux that arrives over the number of light paths of its pass
+  std::span<const Rgb> power;       // Phi_p, flux over the number of light paths of its pass
   std::span<const std::uint32_t> material;  // empty where nothing compares it
   std::uint32_t passes = 0;                 // P; 0: nobody has looked for photons
 };

@@ -14,16 +14,16 @@ namespace {
 
 constexpr std::string_view kEstimator = "`estimator density`";
 
-const formats::TableReader& table_of(const formats::Reader& reader) {
+const formats::TableReader& photon_table(const formats::Reader& reader) {
   if (const formats::TableReader* table = reader.find_table("photons")) return *table;
   throw Error(ErrorCode::bad_input,
               fmt::format("{}: has no photons, which {} needs; render with --photons N",
                           reader.path(), kEstimator));
 }
 
-std::size_t find(const formats::Reader& reader, std::string_view name, formats::Type type,
-                 unsigned components) {
-  const formats::TableReader& table = table_of(reader);
+std::size_t photon_channel(const formats::Reader& reader, std::string_view name, formats::Type type,
+                           unsigned components) {
+  const formats::TableReader& table = photon_table(reader);
   const std::size_t place = table.require(name, kEstimator);
   const formats::Channel& channel = table.schema().channels[place];
   const bool is_float = channel.type == formats::Type::f16 || channel.type == formats::Type::f32 ||
@@ -38,14 +38,14 @@ std::size_t find(const formats::Reader& reader, std::string_view name, formats::
                           formats::name_of(type), components));
 }
 
-// Rows [first, first + count) of the table for the passes of the paths in `range`, and their number.
+// Rows of the table: those of some passes.
 struct Rows {
   std::uint64_t first = 0, count = 0;
   std::uint32_t passes = 0;
 };
 
 Rows rows_of(const formats::Reader& reader, const filter::PathRange& range) {
-  const auto passes = reader.passes(), of_table = table_of(reader).passes();
+  const auto passes = reader.passes(), of_table = photon_table(reader).passes();
   // Passes ascend, and so the first that ends behind the range's beginning is found.
   auto pass =
       static_cast<std::size_t>(std::partition_point(passes.begin(), passes.end(),
@@ -73,19 +73,19 @@ std::optional<PhotonChannels> photon_channels(const formats::Reader& reader,
                                               const filter::Parameters& parameters) {
   if (!filter::info(parameters.estimator).is_of_photons) return std::nullopt;
   const auto three = [&](std::string_view name) {
-    return find(reader, name, formats::Type::f32, 3);
+    return photon_channel(reader, name, formats::Type::f32, 3);
   };
   PhotonChannels channels{three("position"), three("normal"), three("direction"), three("power"),
                           std::nullopt};
   if (parameters.weights.material) {
-    channels.material = find(reader, "material", formats::Type::u32, 1);
+    channels.material = photon_channel(reader, "material", formats::Type::u32, 1);
   }
   return channels;
 }
 
 void read_photons(const formats::Reader& reader, const PhotonChannels& channels,
                   const filter::PathRange& range, PhotonColumns& out) {
-  const formats::TableReader& table = table_of(reader);
+  const formats::TableReader& table = photon_table(reader);
   const Rows rows = rows_of(reader, range);
   if (rows.count > filter::kMostPaths) {
     throw Error(ErrorCode::limit,

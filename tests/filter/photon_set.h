@@ -1,4 +1,4 @@
-// Photons that own their columns, and [density] written a second time: double precision, every pair.
+// Photons that own their columns, and [density] written a second time: in double, every pair.
 #pragma once
 
 #include <cmath>

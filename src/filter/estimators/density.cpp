@@ -90,16 +90,17 @@ Records PhotonProblem::view() const {
 }
 
 Estimates density(const MethodInput& input) {
-  const auto& [records, radius, block, parameters] = input;
+  const Records& records = input.records;
+  const Parameters& parameters = input.parameters;
   Estimates result;
   const auto start = core::Clock::now();
-  Roles roles = find_roles(records, block, parameters, result.statistics);
+  Roles roles = find_roles(records, input.block, parameters, result.statistics);
   result.c_bar.assign(records.size(), Rgb(0, 0, 0));
   result.neighbors.assign(records.size(), 0);
   result.layers.resize(records.layers.size());  // photons have none
-  const PhotonProblem photons(records, roles, radius, parameters.weights, result.statistics);
+  const PhotonProblem photons(records, roles, input.radius, parameters.weights, result.statistics);
   if (photons.has_pairs()) {
-    const std::unique_ptr<Engine> engine = ball_engine(photons.problem(), block, parameters);
+    const std::unique_ptr<Engine> engine = ball_engine(photons.problem(), input.block, parameters);
     result.statistics.seconds_index = core::seconds_since(start);
     const Averaged sums{photons.values(), result.c_bar};
     engine->apply({&sums, 1}, parameters.count_refusals, result.neighbors, result.statistics);
@@ -110,7 +111,7 @@ Estimates density(const MethodInput& input) {
   core::parallel_for(queries.size(), kDensityGrain, [&](std::size_t begin, std::size_t end) {
     for (const std::uint32_t i : queries.subspan(begin, end - begin)) {
       result.c_bar[i] = finished(result.c_bar[i], result.neighbors[i], roles.of[i] == Role::source,
-                                 radius[i], records.contribution[i], records, i, parameters);
+                                 input.radius[i], records.contribution[i], records, i, parameters);
     }
   });
   result.roles = std::move(roles.of);
