@@ -5,6 +5,7 @@
 #include "filter/estimators/adaptive.h"
 #include "filter/estimators/average.h"
 #include "filter/estimators/control.h"
+#include "filter/estimators/density.h"
 #include "filter/estimators/disk.h"
 #include "filter/estimators/hash.h"
 #include "filter/inputs.h"
@@ -14,7 +15,7 @@ namespace psf::filter {
 namespace {
 
 // By the value of Estimator.
-constexpr std::array kMethods = {average, disk, hash, control, adaptive};
+constexpr std::array kMethods = {average, disk, hash, control, adaptive, density};
 static_assert(kMethods.size() == kEstimatorCount);
 
 }  // namespace

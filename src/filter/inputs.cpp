@@ -11,6 +11,12 @@ namespace psf::filter {
 
 void require_channels(const Records& records, const Parameters& parameters) {
   if (records.size() == 0) return;
+  const EstimatorInfo& estimator = info(parameters.estimator);
+  if (estimator.is_of_photons && records.photons.passes == 0) {
+    throw Error(ErrorCode::bad_input, "the records have no photons, which `estimator " +
+                                          std::string(estimator.name) +
+                                          "` needs; only a dump has them");
+  }
   for (const ChannelNeed& need : optional_channels(parameters)) {
     if (has_channel(records, need.channel)) continue;
     throw Error(ErrorCode::bad_input, "the records have no channel " + std::string(need.channel) +

@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "core/seconds.h"
 #include "filter/engine/ring_engine.h"
+#include "filter/estimators/density.h"
 #include "filter/estimators/disk.h"
 #include "filter/inputs.h"
 #include "filter/radius.h"
@@ -82,16 +83,29 @@ class Many {
     const Records& records = scaled.records();
     Statistics counts;
     Roles roles = find_roles(records, block_, parameters_, counts);
+    if (info(parameters_.estimator).is_of_photons) {
+      const PhotonProblem photons(records, roles, scaled.radius(), parameters_.weights, counts);
+      if (!photons.has_pairs()) return false;
+      return share(photons.problem(), photons.values(), roles, scales, basis, counts, start);
+    }
     if (roles.sources.empty()) return false;
     std::vector<float> area;
     if (info(parameters_.estimator).is_over_area) area = disk_areas(records, roles, block_);
     const Weights weights(records, terms_in_use(records, parameters_.weights));
     const Problem problem{records, roles, scaled.radius(), weights, area};
-    engine::RingEngine engine(problem, scales.values, basis);
-    if (!engine.is_moderate()) return false;
     std::vector<Rgb> divided;
     if (parameters_.demodulate) divided = demodulated(r_.contribution, r_, roles);
-    engine.set_values(parameters_.demodulate ? std::span<const Rgb>(divided) : r_.contribution);
+    return share(problem, parameters_.demodulate ? std::span<const Rgb>(divided) : r_.contribution,
+                 roles, scales, basis, counts, start);
+  }
+
+  // `roles` and `counts` are those of the records, `values` those of the problem.
+  bool share(const Problem& problem, std::span<const Rgb> values, Roles& roles,
+             const Scales& scales, std::span<const double> basis, Statistics& counts,
+             Clock::time_point start) {
+    engine::RingEngine engine(problem, scales.values, basis);
+    if (!engine.is_moderate()) return false;
+    engine.set_values(values);
     counts.seconds_index = seconds_since(start);
 
     const auto filter_start = Clock::now();
@@ -134,7 +148,8 @@ class Many {
 
   void finish(const engine::RingEngine& engine, const Roles& roles, const Scales& scales,
               const engine::RingEngine::Results& results, std::span<Rgb> c_bar) const {
-    if (!parameters_.demodulate && !info(parameters_.estimator).is_over_area) {
+    const EstimatorInfo& estimator = info(parameters_.estimator);
+    if (!parameters_.demodulate && !estimator.is_over_area && !estimator.is_of_photons) {
       for (std::size_t k = 0; k < c_bar.size(); ++k) c_bar[k] = results.average[scales.of[k]];
       return;
     }

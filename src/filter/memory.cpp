@@ -27,22 +27,32 @@ std::uint64_t compared(const Parameters& parameters) {
   return bytes;
 }
 
+// Bytes per record of a tree over the sources.
+std::uint64_t tree_bytes(std::uint64_t columns) {
+  constexpr std::uint64_t kQuads = (2 * kVector + kSum) / kQuad;
+  constexpr std::uint64_t kParents = 2;  // per 256 records: node, point of the index, statistics
+  const std::uint64_t groups = (2 * columns + kSum + kGroup - 1) / kGroup;
+  return columns + kSum + kQuads + groups + kParents;
+}
+
 }  // namespace
 
 std::uint64_t memory_per_record(const Parameters& parameters) {
   constexpr std::uint64_t kResult = kVector + kWord + 1;  // c_bar, neighbours, role
   constexpr std::uint64_t kLists = 4 * kWord;  // queries and sources, ascending and in order
   constexpr std::uint64_t kRadius = kWord;
-  constexpr std::uint64_t kQuads = (2 * kVector + kSum) / kQuad;
-  constexpr std::uint64_t kParents = 2;  // per 256 records: node, point of the index, statistics
 
   const EstimatorInfo& estimator = info(parameters.estimator);
   std::uint64_t bytes = kResult + kLists + kRadius + estimator.bytes;
   if (parameters.demodulate || parameters.iterations > 1) bytes += kVector;  // values to average
   if (!estimator.has_tree) return bytes;
-  const std::uint64_t columns = kVector + compared(parameters);  // with positions
-  const std::uint64_t groups = (2 * columns + kSum + kGroup - 1) / kGroup;
-  return bytes + columns + kSum + kQuads + groups + kParents;
+  return bytes + tree_bytes(kVector + compared(parameters));  // with positions
+}
+
+std::uint64_t memory_per_photon(const Parameters& parameters) {
+  // Of the set that they are in: three vectors, power, area, material, role; two lists of sources.
+  constexpr std::uint64_t kOfSet = 4 * kVector + 2 * kWord + 1 + 2 * kWord;
+  return kOfSet + tree_bytes(2 * kVector + compared(parameters));  // with directions
 }
 
 std::uint64_t memory_per_layer(const Parameters& parameters) {

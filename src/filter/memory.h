@@ -11,6 +11,8 @@ namespace psf::filter {
 // themselves. The sort's 44 bytes are freed before the tree, which needs more, is built. Not
 // counted are 20 bytes of scaled.h, which only a block with unusually large or small lengths needs.
 [[nodiscard]] std::uint64_t memory_per_record(const Parameters& parameters);
+// The most bytes per photon of a block that [density] needs, in addition to the photons themselves.
+[[nodiscard]] std::uint64_t memory_per_photon(const Parameters& parameters);
 // The most that a layer with contributions adds to it.
 [[nodiscard]] std::uint64_t memory_per_layer(const Parameters& parameters);
 

@@ -37,6 +37,10 @@ class Worker {
     }
     const auto count = static_cast<std::uint32_t>(averaged_.size());
     counts.add_query(count);
+    if (count == 0 && p_.sources_apart) {
+      for (const Averaged& one : all_) one.out[i] = Rgb(0, 0, 0);
+      return 0;
+    }
     if (count == 0) {
       average_adopted(adopt(search_, p_, i), i, all_, counts);
       return 0;

@@ -21,6 +21,8 @@ struct Problem {
   std::span<const float> radius;  // r_i
   const Weights& weights;
   std::span<const float> area;  // A_j of [disk]; empty: [average]
+  // The sources are no queries, and a query without one in its ball gets 0: there are no orphans.
+  bool sources_apart = false;
 };
 
 // What is averaged, and where the averages go, both by record number.

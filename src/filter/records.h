@@ -20,6 +20,17 @@ struct Layer {
   std::span<const Rgb> unfiltered;    // u_i^l; empty: 0
 };
 
+// Vertices of paths from the lights, of all passes that a block overlaps: what [density] adds up.
+// Views of equal length.
+struct Photons {
+  std::span<const Vec3> position;   // x_p, world units
+  std::span<const Vec3> normal;     // n_p, unit, on the side of the light
+  std::span<const Vec3> direction;  // omega_p, unit, toward where the light came from
+  std::span<const Rgb> power;       // Phi_p, flux over the number of light paths of its pass
+  std::span<const std::uint32_t> material;  // empty where nothing compares it
+  std::uint32_t passes = 0;                 // P; 0: nobody has looked for photons
+};
+
 // Views of equal length; a channel that nothing needs may be empty. The symbols are those of
 // README.md.
 struct Records {
@@ -40,6 +51,7 @@ struct Records {
   std::span<const float> roughness;      // q_i, perceptual, of the smoothest lobe; 1: diffuse
   std::span<const float> coverage = {};  // 0: the path is of the background; for pictures
   std::span<const Layer> layers = {};    // averaged beside c_i, with the same weights
+  Photons photons = {};                  // not of the records' number
 
   [[nodiscard]] std::size_t size() const { return flags.size(); }
 };

@@ -48,6 +48,10 @@ Extremes extremes_of(const Records& records, std::span<const float> radius) {
   });
   Extremes all;
   for (const Extremes& part : parts) all += part;
+  for (const Vec3& x : records.photons.position) {
+    if (!is_finite(x)) continue;
+    all.coordinate = std::max({all.coordinate, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+  }
   return all;
 }
 
@@ -68,6 +72,17 @@ std::optional<int> exponent_for(const Extremes& e, double least_share) {
   return std::clamp(-extent, low, high);
 }
 
+template <class T>
+std::vector<T> by_power_of_two(std::span<const T> vectors, int exponent) {
+  std::vector<T> scaled;
+  scaled.reserve(vectors.size());
+  for (const T& v : vectors) {
+    scaled.emplace_back(std::ldexp(v.x, exponent), std::ldexp(v.y, exponent),
+                        std::ldexp(v.z, exponent));
+  }
+  return scaled;
+}
+
 }  // namespace
 
 Scaled::Scaled(const Records& records, std::span<const float> radius, double least_share)
@@ -83,13 +98,14 @@ Scaled::Scaled(const Records& records, std::span<const float> radius, double lea
   };
   scaled(radius, radii_);
   scaled(records.distance, distances_);
-  positions_.reserve(records.size());
-  for (const Vec3& x : records.position) {
-    positions_.emplace_back(from_world(x.x), from_world(x.y), from_world(x.z));
-  }
+  positions_ = by_power_of_two(records.position, exponent_);
+  photon_positions_ = by_power_of_two(records.photons.position, exponent_);
+  powers_ = by_power_of_two(records.photons.power, 2 * exponent_);
   radius_ = radii_;
   records_.distance = distances_;
   records_.position = positions_;
+  records_.photons.position = photon_positions_;
+  records_.photons.power = powers_;
 }
 
 float Scaled::to_world(float length) const {

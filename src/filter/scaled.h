@@ -22,8 +22,9 @@ class Scaled {
   // radius that will be used as a radius as well. Records and radii are borrowed.
   Scaled(const Records& records, std::span<const float> radius, double least_share = 1);
 
-  // The records with `position` and `distance` in the new unit. Every other column is unchanged;
-  // h_i too, of which only quotients matter.
+  // The records with `position` and `distance` in the new unit, and photons with `position` and
+  // `power`, which is of an area. Every other column is unchanged; h_i too, of which only quotients
+  // matter.
   [[nodiscard]] const Records& records() const { return records_; }
   [[nodiscard]] std::span<const float> radius() const { return radius_; }
 
@@ -39,7 +40,8 @@ class Scaled {
   std::span<const float> radius_;
   int exponent_ = 0;
   bool fits_ = true;
-  std::vector<Vec3> positions_;
+  std::vector<Vec3> positions_, photon_positions_;
+  std::vector<Rgb> powers_;
   std::vector<float> distances_, radii_;
 };
 

@@ -19,9 +19,11 @@ inline constexpr std::array<const char*, kCheckedChannels> kCheckedNames = {
 
 struct Statistics {
   std::uint64_t records = 0;
-  std::uint64_t without_vertex = 0;  // contribute u_i alone
-  std::uint64_t queries = 0;         // records with a vertex, in use
-  std::uint64_t sources = 0;         // queries that are sources
+  std::uint64_t without_vertex = 0;    // contribute u_i alone
+  std::uint64_t queries = 0;           // records with a vertex, in use
+  std::uint64_t sources = 0;           // queries that are sources
+  std::uint64_t photons = 0;           // of [density], of every block anew
+  std::uint64_t photons_left_out = 0;  // not finite, and not among them
 
   std::uint64_t left_out = 0;  // records left out of averages and pictures
   // Records left out, by channel of kCheckedNames; a record counts for each channel that is not

@@ -7,6 +7,7 @@
 
 #include "filter/channels.h"
 #include "filter/records.h"
+#include "run/photons.h"
 
 namespace psf::run {
 
@@ -34,12 +35,14 @@ struct BlockRecords {
   };
   std::vector<LayerColumns> layers;
   std::vector<filter::Layer> layer_views;
+  PhotonColumns photons;
 
   [[nodiscard]] filter::Records view() const {
     filter::Records records;
     filter::for_each_channel(
         [&](const char*, const auto& member) { member(records) = member(*this); });
     records.layers = layer_views;
+    records.photons = photons.view();
     return records;
   }
 };

@@ -170,6 +170,7 @@ ChannelSet Dump::select(const filter::Parameters& parameters, bool guides) const
       if (name == need.channel) member(set) = require(need.channel, need.wanted_by, need.instead);
     });
   }
+  set.photons = photon_channels(reader_, parameters);
   if (guides) {
     set.normal = find("normal");
     set.reflectance = find("reflectance");
@@ -214,6 +215,7 @@ void Dump::read(const filter::PathRange& range, const ChannelSet& channels,
   }
   if (!channels.flags) out.flags.assign(count, filter::kHasVertex | filter::kShaded);
   if (rule_) VertexCut(reader_, *rule_, metadata_.shade_rate).apply(range, out);
+  if (channels.photons) read_photons(reader_, *channels.photons, range, out.photons);
   check_pixels(range, out);
 }
 

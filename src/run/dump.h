@@ -24,6 +24,7 @@ struct ChannelSet {
       camera, normal, reflectance, visibility, hit_distance, direction, material, roughness,
       coverage;
   std::vector<LightLayer> layers;
+  std::optional<PhotonChannels> photons;
 };
 
 class Dump {
@@ -50,7 +51,7 @@ class Dump {
 
   // The channels that `parameters` use; with `guides`, also normal and reflectance where the file
   // has them. Throws Error{bad_input} that names a channel that is missing or has another type, and
-  // what needs it.
+  // what needs it, or photons.
   [[nodiscard]] ChannelSet select(const filter::Parameters& parameters, bool guides) const;
 
   // The place of a channel of formats::kChannels, which has its type; not set where the file has

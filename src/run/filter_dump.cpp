@@ -58,6 +58,12 @@ class DumpFilter {
                       ": its layers of the light are those of the renderer's vertex; --layers none "
                       "does without them");
     }
+    if (!channels.layers.empty() && channels.photons) {
+      throw Error(ErrorCode::bad_input,
+                  dump.reader().path() +
+                      ": its layers of the light are of paths, and `estimator density` takes "
+                      "photons; --layers none does without them");
+    }
     if (run.layers.alpha) channels.coverage = dump.find("alpha");
     if (channels.coverage) check_no_background(dump, channels.layers);
     return channels;

@@ -58,6 +58,29 @@ std::uint64_t longest_block(const BlockSize& size, const Dump& dump, std::size_t
   return longest;
 }
 
+// At most so many photons go with a block.
+std::uint64_t most_photons(const BlockSize& size, const Dump& dump, std::size_t first,
+                           std::size_t last) {
+  const filter::Blocks blocks(size, dump.pass_bounds(), first, last);
+  std::uint64_t most = 0;
+  if (size.kind != BlockSize::Kind::power) {
+    for (std::uint64_t k = 0; k < blocks.count(); ++k) {
+      most = std::max(most, count_photons(dump.reader(), blocks[k]));
+    }
+    return most;
+  }
+  // A block of b^m may begin in the last path of a pass.
+  std::uint64_t shortest = blocks.all().size(), longest = longest_block(size, dump, first, last);
+  for (std::size_t pass = first; pass < last; ++pass) {
+    const filter::PathRange paths{dump.pass_bounds()[pass], dump.pass_bounds()[pass + 1]};
+    shortest = std::min(shortest, paths.size());
+    most = std::max(most, count_photons(dump.reader(), paths));
+  }
+  const std::uint64_t passes =
+      shortest == 0 ? last - first : (longest + shortest - 2) / shortest + 1;
+  return most * std::min<std::uint64_t>(last - first, passes);
+}
+
 // A column as stored and one that is not yet in order, for each thread; chunks and passes; what
 // blocks that do not end where chunks do keep of them.
 std::uint64_t reader_bytes(const Dump& dump, const BlockSize& size) {
@@ -84,7 +107,10 @@ std::uint64_t reader_bytes(const Dump& dump, const BlockSize& size) {
 class Planner {
  public:
   Planner(const Dump& dump, const ChannelSet& channels, const MemoryRequest& request)
-      : dump_(dump), r_(request), record_bytes_(record_bytes(channels)) {
+      : dump_(dump),
+        r_(request),
+        record_bytes_(record_bytes(channels)),
+        photon_bytes_(channels.photons ? photon_bytes(*channels.photons) : 0) {
     for (const LightLayer& layer : channels.layers) {
       if (layer.contribution) ++averaged_layers_;
     }
@@ -101,6 +127,11 @@ class Planner {
                                averaged_layers_ * filter::memory_per_layer(r_.parameters) +
                                r_.beside_a_record) +
                     r_.beside;
+    if (photon_bytes_ > 0) {
+      const std::uint64_t photons = most_photons(size, dump_, r_.first_pass, r_.last_pass);
+      result.block += photons * photon_bytes_;
+      result.filter += photons * filter::memory_per_photon(r_.parameters);
+    }
     result.program += std::min(result.filter / kHolesShare, kMostHoles);
     result.stored = longest * dump_.reader().head().stride();
     return result;
@@ -161,7 +192,7 @@ class Planner {
 
   const Dump& dump_;
   const MemoryRequest& r_;
-  std::uint64_t record_bytes_, averaged_layers_ = 0;
+  std::uint64_t record_bytes_, photon_bytes_, averaged_layers_ = 0;
 };
 
 }  // namespace

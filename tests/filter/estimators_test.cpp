@@ -24,6 +24,7 @@ TEST_CASE("Estimators have names of their own, and memory of their own on top of
   CHECK(bytes(Estimator::control) == bytes(Estimator::average) + 61);
   CHECK(bytes(Estimator::adaptive) == bytes(Estimator::average) + 24);
   CHECK(bytes(Estimator::hash) == 37 + 172);
+  CHECK(bytes(Estimator::density) == 37 + 58);
 }
 
 TEST_CASE("A channel that only the estimator compares must be finite too") {

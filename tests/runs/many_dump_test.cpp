@@ -78,13 +78,21 @@ TEST_CASE("Many radii on a dump equal separate runs, at every number of passes")
 TEST_CASE("Radii that share no traversal equal separate runs too") {
   const TempFolder folder;
   const std::string path = folder / "a.pvb";
-  write_dump(path, random_records(900, 14, 0, kOne), {kOne, {300, 300, 300}, {}});
+  const PhotonSet photons = random_photons(900, 14);
+  DumpOptions options{kOne, {300, 300, 300}, {}};
+  options.photons = &photons;
+  options.photons_of_passes = {300, 400, 200};
+  write_dump(path, random_records(900, 14, 0, kOne), options);
   const run::Dump dump(path);
   for (std::size_t k = 0; k < filter::estimators().size(); ++k) {
     const filter::EstimatorInfo& estimator = filter::estimators()[k];
     run::ManyRequest run = many_run("2passes");
     run.parameters.estimator = static_cast<filter::Estimator>(k);
-    if (estimator.shares_traversal) run.parameters.iterations = 2;  // which share none
+    if (estimator.is_of_photons) {
+      run.parameters.engine = filter::EngineKind::plain;
+    } else if (estimator.shares_traversal) {
+      run.parameters.iterations = 2;  // which share none
+    }
     INFO("estimator " << estimator.name);
     check(path, run, run::filter_many(dump, run), 3);
   }

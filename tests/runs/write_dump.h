@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "../filter/record_set.h"
+#include "../filter/photon_set.h"
 #include "formats/layout/metadata.h"
 #include "formats/write/writer.h"
 
@@ -24,7 +24,23 @@ struct DumpOptions {
   std::vector<std::pair<std::string, const std::vector<Rgb>*>> more = {};
   std::uint8_t components_of_more = 3;
   const std::vector<float>* alpha = nullptr;  // the channel of this name; null: none
+  const PhotonSet* photons = nullptr;         // the table, where there is one
+  std::vector<std::size_t> photons_of_passes = {};
 };
+
+// The table `photons` without what the filter does not look at.
+inline formats::Table photon_table() {
+  using formats::Encoding;
+  using formats::Type;
+  formats::Table table;
+  table.name = "photons";
+  table.chunk_capacity = 64;
+  for (const char* name : {"position", "normal", "direction", "power"}) {
+    table.channels.push_back({name, Type::f32, 3, Encoding::plain});
+  }
+  table.channels.push_back({"material", Type::u32, 1, Encoding::plain});
+  return table;
+}
 
 inline void write_dump(const std::string& path, const RecordSet& set, const DumpOptions& options) {
   formats::Metadata metadata;
@@ -76,12 +92,22 @@ inline void write_dump(const std::string& path, const RecordSet& set, const Dump
     add(name, Type::f32, options.components_of_more, values->data());
   }
 
+  if (options.photons != nullptr) head.tables.push_back(photon_table());
+
   formats::WriterOptions writer_options;
   writer_options.codec = options.codec;
   writer_options.sync = false;
   formats::Writer writer(path, head, writer_options);
-  std::size_t first = 0;
+  std::size_t first = 0, first_photon = 0, pass = 0;
   for (const std::size_t count : options.passes) {
+    if (options.photons != nullptr) {
+      const PhotonSet& all = *options.photons;
+      const void* const columns[] = {&all.position[first_photon], &all.normal[first_photon],
+                                     &all.direction[first_photon], &all.power[first_photon],
+                                     &all.material[first_photon]};
+      writer.append_to(1, options.photons_of_passes[pass], columns);
+      first_photon += options.photons_of_passes[pass++];
+    }
     std::vector<const void*> columns;
     for (const Source& source : sources) {
       columns.push_back(static_cast<const char*>(source.data) + first * source.stride);

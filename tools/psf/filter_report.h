@@ -95,9 +95,11 @@ inline void print_report(const FilterReport& report) {
                               core::counted(report.outcome.passes, "pass", "passes"),
                               core::counted(report.outcome.blocks, "block", "blocks"),
                               core::counted(report.cameras.size(), "camera", "cameras")));
+  const std::string sources = filter::info(p.estimator).is_of_photons
+                                  ? core::counted(s.photons, "photon", "photons")
+                                  : core::counted(s.sources, "source", "sources");
   line("averaged", fmt::format("{} from {}; {} without vertex", core::with_commas(s.queries),
-                               core::counted(s.sources, "source", "sources"),
-                               core::with_commas(s.without_vertex)));
+                               sources, core::with_commas(s.without_vertex)));
   line("radius", fmt::format("{}, delta {:.4g}, block {}", filter::to_text(p.radius),
                              p.radius.delta, filter::to_text(p.block)));
   line("weights", weights_text(p));
@@ -124,16 +126,21 @@ inline void print_report(const FilterReport& report) {
                                  : fmt::format("{}, {} of them matched by no source",
                                                core::with_commas(s.orphans),
                                                core::with_commas(s.orphans_unmatched)));
-  const std::uint64_t left_out = s.left_out + s.without_source + report.outcome.overflows;
+  const std::uint64_t left_out =
+      s.left_out + s.without_source + s.photons_left_out + report.outcome.overflows;
   if (left_out == 0) {
     line("left out", "none");
   } else {
     line("left out",
-         fmt::format("{}: {} not finite ({}), {} in a block without source, {} overflowed",
+         fmt::format("{}: {} not finite ({}), {} in a block without source, {} overflowed{}",
                      core::with_commas(left_out), core::with_commas(s.left_out),
                      listed(filter::kCheckedNames, s.non_finite, "none", core::with_commas),
                      core::with_commas(s.without_source),
-                     core::with_commas(report.outcome.overflows)));
+                     core::with_commas(report.outcome.overflows),
+                     s.photons_left_out == 0
+                         ? ""
+                         : fmt::format(", {} not finite",
+                                       core::counted(s.photons_left_out, "photon", "photons"))));
   }
   const run::MemoryEstimate& memory = report.outcome.memory;
   line("memory",
@@ -201,6 +208,10 @@ inline nlohmann::ordered_json to_json(const FilterReport& report) {
                  {"pictures", report.outcome.seconds_film},
                  {"write", report.seconds_write}}},
                {"files", report.written}};
+  if (filter::info(report.parameters.estimator).is_of_photons) {
+    json["photons"] = s.photons;
+    json["photons_left_out"] = s.photons_left_out;
+  }
   json["layers"] = report.outcome.pictures.empty() ? std::vector<std::string>()
                                                    : report.outcome.pictures[0].light_layers();
   const bool counted = report.parameters.count_refusals;

@@ -48,6 +48,10 @@ class TreeEngine final : public Engine {
         for (const std::uint32_t i : queries) {
           counts.add_query(neighbors[i]);
           if (neighbors[i] > 0) continue;
+          if (p_.sources_apart) {
+            for (const Averaged& one : all) one.out[i] = Rgb(0, 0, 0);
+            continue;
+          }
           average_adopted(adopt(tree, packets_.index(), p_, i, p_.radius[i]), i, all, counts);
         }
       });

@@ -18,6 +18,9 @@ std::vector<search::Box> boxes_of(const Tree& tree) {
 std::vector<std::uint32_t> sources_of(const Problem& problem,
                                       const std::vector<std::uint32_t>& queries) {
   std::vector<std::uint32_t> sources;
+  if (problem.sources_apart) {
+    return search::compact_order(problem.records.position, problem.roles.sources);
+  }
   if (problem.roles.sources.size() == queries.size()) return queries;
   sources.reserve(problem.roles.sources.size());
   std::copy_if(queries.begin(), queries.end(), std::back_inserter(sources),
@@ -38,7 +41,7 @@ Packets::Packets(const Problem& problem)
     : p_(problem),
       order_(search::compact_order(problem.records.position, problem.roles.queries)),
       tree_(problem.records, sources_of(problem, order_), ColumnPlan(problem.weights.terms())),
-      all_sources_(order_.size() == tree_.size()),
+      all_sources_(!problem.sources_apart && order_.size() == tree_.size()),
       index_(is_moderate() ? boxes_of(tree_) : std::vector<search::Box>()) {}
 
 bool Packets::is_moderate() const {

@@ -153,6 +153,7 @@ class RingEngine::Range {
 
   // What an orphan averages depends on the radius only where `plane` does.
   Rgb adopt_one(std::uint32_t i, float r_i, std::size_t k, std::optional<Rgb>& before) {
+    if (p_.sources_apart) return {0, 0, 0};
     if (!before || p_.weights.terms().plane) {
       const Packets& packets = e_.packets_;
       const Adopted adopted = adopt(packets.tree(), packets.index(), p_, i, r_i);

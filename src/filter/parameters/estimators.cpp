@@ -24,6 +24,16 @@ constexpr Refusal kControlRefusals[] = {
      "`refusals`: the balls of `estimator control` hold halves; count with `estimator average`"},
 };
 
+constexpr Refusal kDensityRefusals[] = {
+    {[](const Parameters& p) { return p.demodulate; },
+     "`demodulate`: photons of `estimator density` are no quotient of a reflectance, they are "
+     "multiplied by it; leave it out"},
+    {[](const Parameters& p) { return p.iterations != 1; },
+     "`iterations`: photons of `estimator density` cannot be filtered again; give 1"},
+    {[](const Parameters& p) { return p.sources != 1; },
+     "`sources`: the sources of `estimator density` are photons, of which it takes all; give 1/1"},
+};
+
 constexpr EstimatorInfo kEstimators[kEstimatorCount] = {
     {.name = "average", .meaning = "", .shares_traversal = true},
     {.name = "disk",
@@ -54,6 +64,17 @@ constexpr EstimatorInfo kEstimators[kEstimatorCount] = {
      // Radii in float and in double, and luminances. Its tree for rings is freed before the tree
      // for averages is built.
      .bytes = sizeof(float) + sizeof(double) + sizeof(Rgb)},
+    {.name = "density",
+     .meaning = "photon mapping's, of photons",
+     .channels = {"normal", "reflectance"},
+     .refusals = kDensityRefusals,
+     .terms = bit(Term::normal) | bit(Term::plane) | bit(Term::material),
+     .is_of_photons = true,
+     .is_of_ball = false,
+     .shares_traversal = true,
+     // The records' part of the set that they and the photons make, whose tree is the photons'.
+     .bytes = 3 * sizeof(Vec3) + sizeof(Rgb) + sizeof(float) + sizeof(std::uint32_t) + 2,
+     .has_tree = false},
 };
 
 }  // namespace

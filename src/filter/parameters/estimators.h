@@ -8,17 +8,20 @@
 #include <span>
 #include <string_view>
 
+#include "filter/parameters/terms.h"
+
 namespace psf::filter {
 
 enum class Estimator : std::uint8_t {
-  average,  // [average]
-  disk,     // [disk], as in photon mapping: the sum over the area of the ball's disk
-  hash,     // [hash]: averages over the cells of a jittered grid, without search
-  control,  // [control]: each half of the sources as control variate of the other; unbiased
-  adaptive  // [adaptive]: [average] in the largest ball whose contributions agree
+  average,   // [average]
+  disk,      // [disk], as in photon mapping: the sum over the area of the ball's disk
+  hash,      // [hash]: averages over the cells of a jittered grid, without search
+  control,   // [control]: each half of the sources as control variate of the other; unbiased
+  adaptive,  // [adaptive]: [average] in the largest ball whose contributions agree
+  density    // [density]: photons in the ball over the area of its disk
 };
 
-inline constexpr std::size_t kEstimatorCount = 5;
+inline constexpr std::size_t kEstimatorCount = 6;
 
 struct Parameters;
 
@@ -34,6 +37,10 @@ struct EstimatorInfo {
   // The channels it needs beside those that every dump has and those of the weights; "": none.
   std::array<std::string_view, 2> channels = {};
   std::span<const Refusal> refusals = {};
+  // The terms of w_ij that it can apply; the others are not asked.
+  TermSet terms = (TermSet{1} << kTermCount) - 1;
+  // Its sources are Records::photons, which have no part in c_i, and not the records.
+  bool is_of_photons = false;
   // c_bar_i is made of the sources in the ball of i, so that pairs can be counted and explained.
   bool is_of_ball = true;
   // Its sums are over the area of the ball's disk, not over their number: it needs the distance and

@@ -55,10 +55,11 @@ void Parameters::validate() const {
 
 std::vector<ChannelNeed> optional_channels(const Parameters& parameters) {
   std::vector<ChannelNeed> needs;
+  const EstimatorInfo& estimator = info(parameters.estimator);
   for (std::size_t k = 0; k < kTermCount; ++k) {
     const auto term = static_cast<Term>(k);
     const TermInfo& of = info(term);
-    if (!parameters.weights.on(term)) continue;
+    if (!parameters.weights.on(term) || (estimator.terms & bit(term)) == 0) continue;
     // A switch is off without its option, but that which is on by default.
     const std::string instead = of.threshold != nullptr  ? "give `{} off`"
                                 : WeightTerms().on(term) ? "give `{}=off`"
@@ -69,7 +70,6 @@ std::vector<ChannelNeed> optional_channels(const Parameters& parameters) {
                        fmt::format(fmt::runtime(instead), of.name), term});
     }
   }
-  const EstimatorInfo& estimator = info(parameters.estimator);
   for (const std::string_view channel : estimator.channels) {
     if (channel.empty()) continue;
     needs.push_back(
