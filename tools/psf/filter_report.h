@@ -84,6 +84,23 @@ inline std::string alpha_text(const FilterReport& report) {
   return text;
 }
 
+// What of the records and photons is in no average.
+inline std::string left_out_text(const FilterReport& report) {
+  const filter::Statistics& s = report.outcome.statistics;
+  const std::uint64_t all =
+      s.left_out + s.without_source + s.photons_left_out + report.outcome.overflows;
+  if (all == 0) return "none";
+  const std::string photons =
+      s.photons_left_out == 0
+          ? ""
+          : fmt::format(", {} not finite", core::counted(s.photons_left_out, "photon", "photons"));
+  return fmt::format("{}: {} not finite ({}), {} in a block without source, {} overflowed{}",
+                     core::with_commas(all), core::with_commas(s.left_out),
+                     listed(filter::kCheckedNames, s.non_finite, "none", core::with_commas),
+                     core::with_commas(s.without_source),
+                     core::with_commas(report.outcome.overflows), photons);
+}
+
 inline void print_report(const FilterReport& report) {
   const filter::Statistics& s = report.outcome.statistics;
   const filter::Parameters& p = report.parameters;
@@ -126,22 +143,7 @@ inline void print_report(const FilterReport& report) {
                                  : fmt::format("{}, {} of them matched by no source",
                                                core::with_commas(s.orphans),
                                                core::with_commas(s.orphans_unmatched)));
-  const std::uint64_t left_out =
-      s.left_out + s.without_source + s.photons_left_out + report.outcome.overflows;
-  if (left_out == 0) {
-    line("left out", "none");
-  } else {
-    line("left out",
-         fmt::format("{}: {} not finite ({}), {} in a block without source, {} overflowed{}",
-                     core::with_commas(left_out), core::with_commas(s.left_out),
-                     listed(filter::kCheckedNames, s.non_finite, "none", core::with_commas),
-                     core::with_commas(s.without_source),
-                     core::with_commas(report.outcome.overflows),
-                     s.photons_left_out == 0
-                         ? ""
-                         : fmt::format(", {} not finite",
-                                       core::counted(s.photons_left_out, "photon", "photons"))));
-  }
+  line("left out", left_out_text(report));
   const run::MemoryEstimate& memory = report.outcome.memory;
   line("memory",
        fmt::format("at most {} expected, with {} of records; {} was the peak, and {} of code",

@@ -13,7 +13,7 @@ namespace psf::render {
 namespace {
 
 // The standard distance of the bound, as a part of that from the camera.
-constexpr float kNear = 0.06f;
+constexpr float kBounded = 0.06f;
 
 using Vpls = std::vector<LightVertex>;
 
@@ -44,7 +44,7 @@ class VplIntegrator final : public VertexIntegrator {
   }
   float near_distance(const Segment& segment) const {
     const float asked = settings().vpl_distance;
-    return asked > 0 ? asked : kNear * segment.distance;
+    return asked > 0 ? asked : kBounded * segment.distance;
   }
 
   std::shared_ptr<const Vpls> vpls_;
