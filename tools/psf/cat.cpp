@@ -92,7 +92,7 @@ void add_cat(CLI::App& app) {
         ->type_name("NAME,...");
   };
   names("--channels", options->channels, "keep only these and those that every dump has");
-  names("--drop", options->drop, "leave these channels out");
+  names("--drop", options->drop, "leave these channels, or tables, out");
   names("--quantize", options->quantize,
         "normal, direction: octahedral 2 x 16 bits; others: half floats");
   command->add_option("--passes", options->passes, kPassesHelp)->type_name("FIRST:LAST");

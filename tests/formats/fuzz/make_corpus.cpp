@@ -64,6 +64,32 @@ Bytes make_file(const test::Scratch& scratch, Codec codec, std::size_t passes, b
   return test::load(path);
 }
 
+formats::Head small_tables() {
+  formats::Head head = small_head();
+  formats::Table some, rare;
+  some.name = "some";
+  some.chunk_capacity = 3;
+  some.channels = {{"number", Type::u32, 1}, {"place", Type::f32, 3}};
+  rare.name = "rare";
+  rare.chunk_capacity = 2;
+  rare.channels = {{"number", Type::u64, 1}};
+  head.tables = {some, rare};
+  return head;
+}
+
+// Three passes of four paths; of the second table the second alone has records.
+void append_tables(formats::Writer& writer, Codec codec) {
+  const std::array<std::uint32_t, 15> words{1, 2, 3, 4, 5};
+  for (std::size_t pass = 0; pass < 3; ++pass) {
+    append(writer, 4, codec);
+    const std::array<const void*, 2> some = {words.data(), words.data()};
+    writer.append_to(1, 5, some);
+    const std::array<const void*, 1> rare = {words.data()};
+    writer.append_to(2, pass == 1 ? 3 : 0, rare);
+    writer.commit();
+  }
+}
+
 // A frame that version 1 does not know, and a commit behind it.
 Bytes with_unknown_frame(const Bytes& file, std::uint32_t flags) {
   Bytes out = file;
@@ -107,6 +133,18 @@ void save_files(const std::string& folder) {
   test::save(recover + "commit-lost.pvb", with_bit_flipped(raw, "CMIT", 70));
   test::save(recover + "index-lost.pvb", with_bit_flipped(raw, "CMIT", 260));
   test::save(recover + "cut.pvb", Bytes(raw.begin(), raw.end() - 6000));
+  const std::string path = scratch.path("tables.pvb");
+  for (const Codec codec : {Codec::raw, Codec::zstd}) {
+    formats::Writer writer(path, small_tables(), {codec, false, test::golden_uuid()});
+    append_tables(writer, codec);
+    writer.close();
+    const Bytes tables = test::load(path);
+    test::save(open + (codec == Codec::raw ? "tables.pvb" : "tables-zstd.pvb"), tables);
+    if (codec == Codec::zstd) continue;
+    test::save(recover + "table-lost.pvb", with_bit_flipped(tables, "TCHK", 40));
+    test::save(recover + "table-column-lost.pvb", with_bit_flipped(tables, "TCHK", 200));
+    test::save(recover + "table-commit-lost.pvb", with_bit_flipped(tables, "CMIT", 240));
+  }
 }
 
 Bytes marked(char mark, std::span<const std::byte> bytes) {

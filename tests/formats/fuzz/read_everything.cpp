@@ -17,18 +17,18 @@ bool has_floats(const formats::Channel& channel) {
 }
 
 // The last third of a column, by way of the cache, is what the whole column has there.
-void read_part(const formats::Reader& reader, std::size_t k, const formats::ChunkEntry& entry,
+void read_part(const formats::TableReader& reader, std::size_t k, const formats::ChunkEntry& entry,
                const std::vector<std::byte>& whole) {
-  const std::size_t stride = reader.head().channels[k].stride();
+  const std::size_t stride = reader.schema().channels[k].stride();
   const std::uint32_t count = entry.count / 3;
   std::vector<std::byte> part(count * stride);
   reader.read(k, entry.first + entry.count - count, count, part);
   demand(std::equal(part.rbegin(), part.rend(), whole.rbegin()), "a part is part of the whole");
 }
 
-ColumnBytes read_column(const formats::Reader& reader, std::size_t k,
+ColumnBytes read_column(const std::string& path, const formats::TableReader& reader, std::size_t k,
                         const formats::ChunkEntry& entry) {
-  const formats::Channel& channel = reader.head().channels[k];
+  const formats::Channel& channel = reader.schema().channels[k];
   ColumnBytes column;
   const std::uint64_t size = entry.count * std::uint64_t{channel.stride()};
   column.readable = size > kMostBytes;
@@ -38,7 +38,7 @@ ColumnBytes read_column(const formats::Reader& reader, std::size_t k,
     reader.read(k, entry.first, entry.count, column.bytes);
     column.readable = true;
   } catch (const Error& error) {
-    demand_good_error(error, reader.path());
+    demand_good_error(error, path);
     column.bytes.clear();
     return column;
   }
@@ -49,14 +49,15 @@ ColumnBytes read_column(const formats::Reader& reader, std::size_t k,
   return column;
 }
 
-void check_totals(const formats::Reader& reader) {
+// A pass may be without records of a table.
+void check_totals(const formats::TableReader& reader, bool of_paths) {
   std::uint64_t in_chunks = 0, in_passes = 0;
   for (const formats::ChunkEntry& entry : reader.chunks()) {
     demand(entry.first == in_chunks && entry.count > 0, "chunks have no gaps");
     in_chunks += entry.count;
   }
   for (const formats::Pass& pass : reader.passes()) {
-    demand(pass.first == in_passes && pass.count > 0, "passes have no gaps");
+    demand(pass.first == in_passes && (pass.count > 0 || !of_paths), "passes have no gaps");
     in_passes += pass.count;
   }
   demand(in_chunks == reader.records() && in_passes == reader.records(), "totals add up");
@@ -65,14 +66,18 @@ void check_totals(const formats::Reader& reader) {
 }  // namespace
 
 Contents read_everything(const formats::Reader& reader) {
-  check_totals(reader);
   Contents contents;
   contents.records = reader.records();
-  for (std::size_t k = 0; k < reader.head().channels.size(); ++k) {
-    std::vector<ColumnBytes>& columns = contents.columns.emplace_back();
-    for (const formats::ChunkEntry& entry : reader.chunks()) {
-      columns.push_back(read_column(reader, k, entry));
-      contents.complete = contents.complete && columns.back().readable;
+  for (std::size_t t = 0; t < reader.head().table_count(); ++t) {
+    const formats::TableReader& table = reader.table(t);
+    check_totals(table, t == 0);
+    for (std::size_t k = 0; k < table.schema().channels.size(); ++k) {
+      std::vector<ColumnBytes> columns;
+      for (const formats::ChunkEntry& entry : table.chunks()) {
+        columns.push_back(read_column(reader.path(), table, k, entry));
+        contents.complete = contents.complete && columns.back().readable;
+      }
+      if (t == 0) contents.columns.push_back(std::move(columns));
     }
   }
   try {

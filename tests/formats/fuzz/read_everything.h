@@ -18,9 +18,9 @@ struct ColumnBytes {
 };
 
 struct Contents {
-  bool complete = true;  // no column was refused
+  bool complete = true;  // no column was refused, of the paths or of a table
   std::uint64_t records = 0;
-  std::vector<std::vector<ColumnBytes>> columns;  // by channel, by chunk
+  std::vector<std::vector<ColumnBytes>> columns;  // of the paths, by channel, by chunk
   std::vector<std::byte> resume_state;
 };
 

@@ -73,6 +73,21 @@ TEST_CASE("tables that pvb.py writes are read by the C header and from the spec 
   if (codecs.size() < 2) SKIP(test::kNoZstandard);
 }
 
+TEST_CASE("the golden files of version 1.1 are read by pvb.py and from the spec alone") {
+  const test::Scratch scratch;
+  const std::string folder = PSF_SOURCE_DIR "/sample_data/", expected = test::tables_dump(5);
+  const bool has_zstd = std::system("zstd --version >/dev/null 2>&1") == 0;
+  for (const std::string codec : {"raw", "zstd"}) {
+    const std::string path = folder + "golden-tables-" + codec + ".pvb";
+    if (codec == "raw" || has_zstd) CHECK((read_from_the_spec(scratch, path) == expected));
+  }
+  for (const std::string& codec : test::codecs()) {
+    const std::string path = folder + "golden-tables-" + codec + ".pvb";
+    CHECK((test::run_tool(scratch, fmt::format("dump '{}'", path)) == expected));
+  }
+  if (test::codecs().empty()) SKIP(test::kNoNumpy);
+}
+
 TEST_CASE("the C header and pvb.py go on with each other's tables") {
   if (test::codecs().empty()) SKIP(test::kNoNumpy);
   const test::Scratch scratch;
