@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "run/table_channel.h"
 
 namespace psf::run {
 namespace {
@@ -22,20 +23,8 @@ const formats::TableReader& photon_table(const formats::Reader& reader) {
 }
 
 std::size_t photon_channel(const formats::Reader& reader, std::string_view name, formats::Type type,
-                           unsigned components) {
-  const formats::TableReader& table = photon_table(reader);
-  const std::size_t place = table.require(name, kEstimator);
-  const formats::Channel& channel = table.schema().channels[place];
-  const bool is_float = channel.type == formats::Type::f16 || channel.type == formats::Type::f32 ||
-                        channel.type == formats::Type::f64 ||
-                        channel.encoding == formats::Encoding::octahedral;
-  const bool fits = type == formats::Type::f32 ? is_float : channel.type == type;
-  if (fits && channel.decoded_components() == components) return place;
-  throw Error(ErrorCode::bad_input,
-              fmt::format("{}: table photons: channel {} is {} x {}, expected {} x {}; see "
-                          "formats/README.md",
-                          reader.path(), name, formats::name_of(channel.type), channel.components,
-                          formats::name_of(type), components));
+                           std::size_t components) {
+  return table_channel(reader, photon_table(reader), name, type, components, kEstimator);
 }
 
 // Rows of the table: those of some passes.

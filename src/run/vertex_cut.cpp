@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "filter/records.h"
 #include "run/path_radiance.h"
+#include "run/table_channel.h"
 
 namespace psf::run {
 namespace {
@@ -29,7 +30,6 @@ const formats::TableReader& vertices_of(const formats::Reader& reader) {
 
 // Columns of consecutive rows; those that nothing asks for are empty.
 struct VertexCut::Vertices {
-  std::uint64_t first = 0;  // row
   std::vector<std::uint32_t> path, parent, material;
   std::vector<std::uint8_t> flags;
   std::vector<Vec3> position, normal, direction;
@@ -40,16 +40,7 @@ struct VertexCut::Vertices {
 VertexCut::VertexCut(const formats::Reader& reader, const VertexRule& rule,
                      std::uint32_t shade_rate)
     : reader_(reader), table_(vertices_of(reader)), rule_(rule), all_shaded_(shade_rate <= 1) {
-  for (const char* name :
-       {"path", "parent", "position", "throughput", "emission", "direct", "background", "flags"}) {
-    static_cast<void>(table_.require(name, "the choice of a vertex"));
-  }
-  if (rule.kind == VertexRule::Kind::roughness) {
-    static_cast<void>(table_.require("roughness", to_text(rule)));
-  }
-  if (rule.kind == VertexRule::Kind::distance) {
-    static_cast<void>(table_.require("distance", to_text(rule)));
-  }
+  static_cast<void>(read(0, 0, {}));  // what every choice looks at is there
 }
 
 bool VertexCut::has(std::string_view channel) const {
@@ -130,18 +121,22 @@ std::uint64_t VertexCut::row_of(const formats::Pass& rows, std::uint32_t path) c
 VertexCut::Vertices VertexCut::read(std::uint64_t first, std::uint64_t last,
                                     const BlockRecords& out) const {
   Vertices rows;
-  rows.first = first;
   const auto count = static_cast<std::size_t>(last - first);
+  const auto place = [this](const char* name, formats::Type type, std::size_t components) {
+    return table_channel(reader_, table_, name, type, components, "the choice of a vertex");
+  };
   const auto numbers = [&](const char* name, auto& column) {
+    const bool bytes = sizeof(column[0]) == 1;
+    const std::size_t at = place(name, bytes ? formats::Type::u8 : formats::Type::u32, 1);
     column.resize(count);
-    table_.read(table_.require(name, "the choice of a vertex"), first, count,
-                std::as_writable_bytes(std::span(column)));
+    table_.read(at, first, count, std::as_writable_bytes(std::span(column)));
   };
   const auto floats = [&](const char* name, auto& column) {
+    constexpr std::size_t kComponents = sizeof(column[0]) / sizeof(float);
+    const std::size_t at = place(name, formats::Type::f32, kComponents);
     column.resize(count);
     auto* values = static_cast<float*>(static_cast<void*>(column.data()));
-    table_.read_floats(table_.require(name, "the choice of a vertex"), first, count,
-                       {values, count * sizeof(column[0]) / sizeof(float)});
+    table_.read_floats(at, first, count, {values, count * kComponents});
   };
   numbers("path", rows.path);
   numbers("parent", rows.parent);

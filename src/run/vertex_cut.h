@@ -17,7 +17,8 @@ namespace psf::run {
 
 class VertexCut {
  public:
-  // Throws Error{bad_input} where the dump has no vertices, or none with what the rule looks at.
+  // Throws Error{bad_input} where the dump has no vertices, or none with what the rule looks at, of
+  // the types that formats/README.md gives.
   // `shade_rate`: of the metadata. The reader must outlive it.
   VertexCut(const formats::Reader& reader, const VertexRule& rule, std::uint32_t shade_rate);
 

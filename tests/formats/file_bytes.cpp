@@ -98,4 +98,32 @@ Bytes read_all(const formats::Reader& reader, std::size_t channel) {
   return out;
 }
 
+void damage_page(Bytes& bytes, std::mt19937& random) {
+  const auto at = [](std::size_t place) { return static_cast<std::ptrdiff_t>(place); };
+  const Bytes before = bytes;
+  const std::size_t pages = bytes.size() / 4096;
+  const std::size_t a = 4096 * (random() % pages), b = 4096 * (random() % pages);
+  const auto copy = [&](std::size_t from, std::size_t to) {
+    std::copy_n(before.begin() + at(from), 4096, bytes.begin() + at(to));
+  };
+  switch (random() % 5) {
+    case 0:
+      std::fill_n(bytes.begin() + at(a), 4096, std::byte{0});
+      break;
+    case 1:
+      copy(a, b);
+      break;
+    case 2:  // swapped
+      copy(a, b);
+      copy(b, a);
+      break;
+    case 3:  // doubled: everything behind moves
+      bytes.insert(bytes.begin() + at(b), before.begin() + at(a), before.begin() + at(a) + 4096);
+      break;
+    default:
+      bytes.erase(bytes.begin() + at(a), bytes.begin() + at(a) + 4096);
+      break;
+  }
+}
+
 }  // namespace psf::test

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <random>
 #include <span>
 #include <string>
 #include <vector>
@@ -51,6 +52,9 @@ struct FramePlace {
 // The places of the frames in a file without faults.
 [[nodiscard]] std::vector<FramePlace> frames(const Bytes& bytes);
 [[nodiscard]] std::vector<FramePlace> frames(const Bytes& bytes, const std::string& type);
+
+// Zeroes, copies, swaps, doubles or deletes a page, all of these as often.
+void damage_page(Bytes& bytes, std::mt19937& random);
 
 // All records of a channel, as stored.
 [[nodiscard]] Bytes read_all(const formats::Reader& reader, std::size_t channel);

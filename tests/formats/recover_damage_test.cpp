@@ -105,37 +105,6 @@ class Judge {
   std::vector<test::FramePlace> chunks_;  // committed
 };
 
-std::ptrdiff_t at(std::size_t place) {
-  return static_cast<std::ptrdiff_t>(place);
-}
-
-void shuffle(test::Bytes& bytes, std::mt19937& random) {
-  const test::Bytes before = bytes;
-  const std::size_t pages = bytes.size() / 4096;
-  const std::size_t a = 4096 * (random() % pages), b = 4096 * (random() % pages);
-  const auto copy = [&](std::size_t from, std::size_t to) {
-    std::copy_n(before.begin() + at(from), 4096, bytes.begin() + at(to));
-  };
-  switch (random() % 5) {
-    case 0:
-      std::fill_n(bytes.begin() + at(a), 4096, std::byte{0});
-      break;
-    case 1:
-      copy(a, b);
-      break;
-    case 2:  // swapped
-      copy(a, b);
-      copy(b, a);
-      break;
-    case 3:  // doubled: everything behind moves
-      bytes.insert(bytes.begin() + at(b), before.begin() + at(a), before.begin() + at(a) + 4096);
-      break;
-    default:
-      bytes.erase(bytes.begin() + at(a), bytes.begin() + at(a) + 4096);
-      break;
-  }
-}
-
 // Each on all kinds of file; `damage` changes the bytes, and may hit HEAD with all its copies where
 // `all_heads`.
 template <class Damage>
@@ -179,7 +148,7 @@ void flip_many_bytes(std::size_t each) {
 }
 
 void shuffle_pages(std::size_t each) {
-  const Counts counts = damage_files(each, false, shuffle);
+  const Counts counts = damage_files(each, false, test::damage_page);
   CHECK(counts.whole > 0);
   CHECK(counts.losses > 0);
   CHECK(counts.refused > 0);  // all moved by a page

@@ -117,31 +117,6 @@ std::size_t flip_table_bits(Codec codec, std::size_t step, const std::string& ty
   return flips;
 }
 
-void damage_pages(test::Bytes& bytes, std::mt19937& random) {
-  const test::Bytes before = bytes;
-  const std::size_t pages = bytes.size() / kPage;
-  const auto at = [](std::size_t place) { return static_cast<std::ptrdiff_t>(place); };
-  const std::size_t a = kPage * (random() % pages), b = kPage * (random() % pages);
-  switch (random() % 5) {
-    case 0:
-      std::fill_n(bytes.begin() + at(a), kPage, std::byte{0});
-      break;
-    case 1:
-      std::copy_n(before.begin() + at(a), kPage, bytes.begin() + at(b));
-      break;
-    case 2:
-      std::copy_n(before.begin() + at(a), kPage, bytes.begin() + at(b));
-      std::copy_n(before.begin() + at(b), kPage, bytes.begin() + at(a));
-      break;
-    case 3:
-      bytes.insert(bytes.begin() + at(b), before.begin() + at(a), before.begin() + at(a + kPage));
-      break;
-    default:
-      bytes.erase(bytes.begin() + at(a), bytes.begin() + at(a + kPage));
-      break;
-  }
-}
-
 std::size_t damage_table_pages(Codec codec, std::size_t count) {
   const test::Scratch scratch;
   const std::string path = scratch.path("pages.pvb");
@@ -151,7 +126,7 @@ std::size_t damage_table_pages(Codec codec, std::size_t count) {
   std::size_t cases = 0, not_found = 0;
   while (cases < count) {
     test::Bytes bytes = whole;
-    damage_pages(bytes, random);
+    test::damage_page(bytes, random);
     if (bytes == whole) continue;
     ++cases;
     test::save(path, bytes);
@@ -269,7 +244,7 @@ TEST_CASE("many damaged pages of a file with tables never give a wrong value", "
 
 TEST_CASE("of a file with tables the passes that are whole are recovered") {
   flip_and_recover(150);
-  const RecoveredTables pages = recover_many(150, damage_pages);
+  const RecoveredTables pages = recover_many(150, test::damage_page);
   CHECK(pages.passes_kept > pages.passes_left_out);
   CHECK(pages.passes_left_out > 0);
 }
@@ -277,7 +252,7 @@ TEST_CASE("of a file with tables the passes that are whole are recovered") {
 TEST_CASE("of many damaged files with tables the passes that are whole are recovered",
           "[.][long]") {
   flip_and_recover(5'000);
-  CHECK(recover_many(5'000, damage_pages).passes_left_out > 0);
+  CHECK(recover_many(5'000, test::damage_page).passes_left_out > 0);
 }
 
 TEST_CASE(

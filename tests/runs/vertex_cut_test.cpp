@@ -366,6 +366,26 @@ TEST_CASE("Without vertices, with paths that split, or with a pass that lost the
         std::string::npos);
   write_paths(path, random_paths(4), 2);
   CHECK(said().find("paths that split") != std::string::npos);
+  const formats::Head head = formats::Reader(path).head();
+  for (const auto& [name, type] : {std::pair("path", formats::Type::u64),
+                                   {"parent", formats::Type::u16},
+                                   {"flags", formats::Type::u32},
+                                   {"direct", formats::Type::u32}}) {
+    formats::Head other = head;
+    other.tables[0].channels[*other.tables[0].find(name)].type = type;
+    const std::string copy = folder / "other.pvb";
+    {
+      formats::Writer writer(copy, other, {formats::Codec::raw, false, {}});
+      const std::vector<std::byte> zeros(64 * 16);
+      const std::vector<const void*> columns(20, zeros.data());
+      writer.append(1, std::span(columns).first(other.channels.size()));
+      writer.append_to(1, 1, std::span(columns).first(other.tables[0].channels.size()));
+      writer.commit();
+    }
+    const std::string message = message_of([&] { (void)Dump(copy, rule); });
+    CHECK(message.find(std::string("table vertices: channel ") + name + " is ") !=
+          std::string::npos);
+  }
   std::vector<TestPath> none = random_paths(4);
   for (std::size_t k = kPass; k < 2 * kPass; ++k) none[k] = {};
   write_paths(path, none);
