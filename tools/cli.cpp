@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "core/standard_streams.h"
+#include "option_values.h"
 
 namespace psf::tools {
 namespace {
@@ -91,8 +92,9 @@ Ending run(CLI::App& app, int argc, char** argv) {
 }  // namespace
 
 void add_common(CLI::App& command, CommonOptions& options, bool with_json) {
-  command.add_option("--threads", options.threads, "threads to use; 0: all cores")
-      ->capture_default_str();
+  constexpr std::size_t kMostThreads = 4096;
+  add_number(command, "--threads", options.threads, std::size_t{0}, kMostThreads,
+             "threads to use; 0: all cores");
   command.add_flag("--quiet", options.quiet, "no progress and no notes on stderr");
   if (with_json) {
     command.add_option("--json", options.json, "write the figures to this file, for programs")

@@ -51,6 +51,13 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, T& target, T lea
   return option;
 }
 
+// The same without a largest value.
+template <class T>
+CLI::Option* add_number(CLI::App& app, const std::string& name, T& target, T least,
+                        const std::string& help) {
+  return add_number(app, name, target, least, std::numeric_limits<T>::max(), help);
+}
+
 // Breaks a help text into lines that fit beside the options' names.
 inline std::string wrap(const std::string& text) {
   constexpr std::size_t kWidth = 68;

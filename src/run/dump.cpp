@@ -133,6 +133,13 @@ std::size_t Dump::require(std::string_view channel, std::string_view wanted_by,
                           std::string_view instead) const {
   const std::optional<std::size_t> place = find(channel);
   if (place) return *place;
+  if (rule_ && reader_.head().find(channel)) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: the vertices of {} have no channel {}, which {} needs; choose "
+                            "first-rough{}",
+                            reader_.path(), to_text(*rule_), channel, wanted_by,
+                            instead.empty() ? "" : ", or " + std::string(instead)));
+  }
   throw Error(ErrorCode::bad_input,
               fmt::format("{}: has no channel {}, which {} needs; render a dump that has it{}",
                           reader_.path(), channel, wanted_by,

@@ -54,6 +54,7 @@ bool VertexCut::has(std::string_view channel) const {
 }
 
 void VertexCut::apply(const filter::PathRange& range, BlockRecords& out) const {
+  if (rule_.kind == VertexRule::Kind::first_rough) return;
   const auto passes = reader_.passes();
   // A file without u has u = 0 for the vertex that the renderer selected, and not for others.
   if (out.unfiltered.empty()) out.unfiltered.assign(static_cast<std::size_t>(range.size()), Rgb(0));
@@ -75,33 +76,61 @@ void VertexCut::apply(const filter::PathRange& range, BlockRecords& out) const {
   }
 }
 
-// Paths [first, last) of a pass, which are the records from `place` on.
+// Paths [first, last), all of one pass, which are the records from `place` on.
 void VertexCut::cut(std::uint64_t pass, std::uint64_t first, std::uint64_t last, std::size_t place,
                     BlockRecords& out) const {
   const std::uint64_t start = reader_.passes()[pass].first;
-  const formats::Pass& rows = table_.passes()[pass];
-  const std::uint64_t from = row_of(rows, static_cast<std::uint32_t>(first - start));
-  const std::uint64_t to = row_of(rows, static_cast<std::uint32_t>(last - start));
-  const Vertices vertices = read(from, to, out);
+  const RowRange rows = rows_of(pass, first - start, last - start);
+  const Vertices vertices = read(rows.first, rows.last, out);
+  const auto sorted = std::is_sorted_until(vertices.path.begin(), vertices.path.end());
+  if (sorted != vertices.path.end()) {
+    fail(rows.first + static_cast<std::uint64_t>(sorted - vertices.path.begin()),
+         "its path is out of order");
+  }
+  std::uint64_t path = first;  // the next one to be cut
+  const auto pass_over = [&](std::uint64_t until) {
+    for (; path < until; ++path) {
+      if ((out.flags[place + (path - first)] & filter::kHasVertex) == 0) continue;
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("{}: record {}: it has a vertex, but its path has none in the table "
+                              "vertices; render it again",
+                              reader_.path(), path));
+    }
+  };
   std::size_t row = 0;
   while (row < vertices.path.size()) {
     std::size_t end = row + 1;
     while (end < vertices.path.size() && vertices.path[end] == vertices.path[row]) ++end;
-    if (vertices.path[row] < first - start || vertices.path[row] >= last - start) {
-      fail(from + row, "its path is out of order");
+    const std::uint64_t here = start + vertices.path[row];
+    if (here < path || here >= last) fail(rows.first + row, "its path is out of order");
+    if (vertices.parent[row] != 0) {
+      fail(rows.first + row, "the first vertex of a path has a parent");
     }
-    if (vertices.parent[row] != 0) fail(from + row, "the first vertex of a path has a parent");
     for (std::size_t k = row + 1; k < end; ++k) {
-      if (vertices.parent[k] != 1) fail(from + k, "paths that split have no one vertex to choose");
+      if (vertices.parent[k] == 1) continue;
+      fail(rows.first + k, "paths that split have no one vertex to choose");
     }
-    cut_path(vertices, row, end,
-             place + vertices.path[row] - static_cast<std::size_t>(first - start), out);
+    pass_over(here);
+    cut_path(vertices, row, end, place + static_cast<std::size_t>(here - first), out);
+    path = here + 1;
     row = end;
   }
+  pass_over(last);
+}
+
+VertexCut::RowRange VertexCut::rows_of(std::uint64_t pass, std::uint64_t first,
+                                       std::uint64_t last) const {
+  const formats::Pass& rows = table_.passes()[pass];
+  const RowRange range{row_of(rows, first), row_of(rows, last)};
+  const bool is_end = last == reader_.passes()[pass].count;
+  if (is_end && range.last < rows.first + rows.count) {
+    fail(range.last, "its path is none of its pass");
+  }
+  return range;
 }
 
 // The first row of a pass whose path is at least `path`.
-std::uint64_t VertexCut::row_of(const formats::Pass& rows, std::uint32_t path) const {
+std::uint64_t VertexCut::row_of(const formats::Pass& rows, std::uint64_t path) const {
   const std::size_t channel = *table_.schema().find("path");
   std::uint64_t first = rows.first, count = rows.count;
   while (count > 0) {
@@ -165,8 +194,7 @@ std::size_t VertexCut::select(const Vertices& rows, std::size_t first, std::size
   for (std::size_t k = first; k < last; ++k) {
     switch (rule_.kind) {
       case VertexRule::Kind::first_rough:
-        if ((rows.flags[k] & kSelected) != 0) return k;
-        break;
+        break;  // apply() leaves the records as they are
       case VertexRule::Kind::depth:
         if (static_cast<double>(k - first) == rule_.value) return k;
         break;

@@ -29,14 +29,20 @@ class VertexCut {
   // Changes the records of the paths of `range`, which are those of `out`. Where the rule selects
   // what the renderer has selected, a record stays as it is, to the last bit. A path of which it
   // selects nothing has no vertex. Paths are cut in parallel, some thousand at a time, which bounds
-  // the memory. Throws Error{bad_input} where a path has no chain of vertices.
+  // the memory. Throws Error{bad_input} where a path has no chain of vertices, where chains are not in
+  // the order of the paths, and where a record has a vertex but its path has none.
   void apply(const filter::PathRange& range, BlockRecords& out) const;
 
  private:
   struct Vertices;  // of some paths
   void cut(std::uint64_t pass, std::uint64_t first, std::uint64_t last, std::size_t place,
            BlockRecords& out) const;
-  [[nodiscard]] std::uint64_t row_of(const formats::Pass& rows, std::uint32_t path) const;
+  // The rows of paths [first, last) of a pass, numbers within it: the first, and the one behind them.
+  struct RowRange {
+    std::uint64_t first, last;
+  };
+  [[nodiscard]] RowRange rows_of(std::uint64_t pass, std::uint64_t first, std::uint64_t last) const;
+  [[nodiscard]] std::uint64_t row_of(const formats::Pass& rows, std::uint64_t path) const;
   [[nodiscard]] Vertices read(std::uint64_t first, std::uint64_t last,
                               const BlockRecords& out) const;
   [[nodiscard]] std::size_t select(const Vertices& vertices, std::size_t first,

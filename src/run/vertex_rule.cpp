@@ -40,7 +40,7 @@ VertexRule parse_vertex_rule(const std::string& text) {
   }
   throw Error(
       ErrorCode::usage,
-      fmt::format("vertex: expected first-rough, depth:K with a whole number K, roughness:T "
+      fmt::format("`vertex`: expected first-rough, depth:K with a whole number K, roughness:T "
                   "with 0 <= T <= 1, or distance:D, got \"{}\"",
                   text));
 }

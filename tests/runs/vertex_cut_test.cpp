@@ -2,6 +2,9 @@
 // and u_i of any of them, and their sum stays the radiance of the path.
 #include "run/vertex_cut.h"
 
+#include <fmt/format.h>
+
+#include <functional>
 #include <limits>
 #include <random>
 
@@ -154,9 +157,11 @@ void add_path(const TestPath& path, std::uint32_t number, Columns& to) {
   }
 }
 
-// `parent`: of vertices that have one.
-void write_paths(const std::string& path, const std::vector<TestPath>& paths,
-                 std::uint32_t parent = 1, bool with_vertices = true) {
+// `parent`: of vertices that have one. change(columns) makes something else of a pass.
+using Change = std::function<void(Columns&)>;
+void write_paths(
+    const std::string& path, const std::vector<TestPath>& paths, std::uint32_t parent = 1,
+    bool with_vertices = true, const Change& change = [](Columns&) {}) {
   using formats::Type;
   formats::Metadata metadata;
   metadata.cameras.resize(1);
@@ -170,6 +175,7 @@ void write_paths(const std::string& path, const std::vector<TestPath>& paths,
       add_path(paths[pass * kPass + k], static_cast<std::uint32_t>(k), c);
     }
     for (std::uint32_t& p : c.parent) p *= parent;
+    change(c);
     formats::Head head;
     head.metadata = formats::to_json(metadata);
     head.chunk_capacity = 500;
@@ -318,7 +324,11 @@ TEST_CASE("The vertex of a rule has its x, alpha, c and u, in every range of pat
 TEST_CASE("The renderer's own vertex changes no bit of the records") {
   const tests::TempFolder folder;
   const std::string path = folder / "v.pvb";
-  write_paths(path, random_paths(2));
+  // Also where it is not among the first vertices, which are all that a table may have.
+  const bool is_told = GENERATE(true, false);
+  write_paths(path, random_paths(2), 1, true, [&](Columns& c) {
+    if (!is_told) c.vertex_flags.assign(c.vertex_flags.size(), 0);
+  });
   const Dump plain(path), chosen(path, run::parse_vertex_rule("first-rough"));
   filter::Parameters parameters;
   BlockRecords a, b;
@@ -345,7 +355,49 @@ TEST_CASE("The visibility of another vertex is not known, and so is no term") {
   CHECK(other.has("normal"));
   filter::Parameters parameters;
   const std::string message = message_of([&] { (void)other.select(parameters, false); });
-  CHECK(message.find("has no channel visibility") != std::string::npos);
+  CHECK(message.find("the vertices of depth:1 have no channel visibility, which ") !=
+        std::string::npos);
+  CHECK(message.find("; choose first-rough, or give ") != std::string::npos);
+}
+
+TEST_CASE("Vertices that are not those of the paths in their order are refused, for any range") {
+  const tests::TempFolder folder;
+  const std::string path = folder / "v.pvb";
+  const std::vector<TestPath> paths = random_paths(5);
+  // In the first pass: a path with x_i before one without vertices, and two paths with vertices.
+  std::uint32_t lonely = 0, pair = 0;
+  while (paths[lonely].selected == kNobody || !paths[lonely + 1].vertices.empty()) ++lonely;
+  while (paths[pair].vertices.empty() || paths[pair + 1].vertices.empty()) ++pair;
+  const auto said = [&](const Change& change) {
+    write_paths(path, paths, 1, true, change);
+    const Dump dump(path, run::parse_vertex_rule("depth:1"));
+    filter::Parameters parameters;
+    parameters.weights.switch_off(filter::Term::visibility);
+    const run::ChannelSet channels = dump.select(parameters, false);
+    return message_of([&] {
+      BlockRecords out;
+      dump.read({0, kPass}, channels, out);
+    });
+  };
+  const auto exchange = [](Columns& c, std::uint32_t a, std::uint32_t b) {
+    for (std::uint32_t& number : c.path) {
+      const std::uint32_t was = number;
+      if (was == a) number = b;
+      if (was == b) number = a;
+    }
+  };
+  CHECK(said([](Columns&) {}).empty());
+  CHECK(said([&](Columns& c) { exchange(c, pair, pair + 1); }).find("out of order") !=
+        std::string::npos);
+  CHECK(said([&](Columns& c) {
+          exchange(c, lonely, lonely + 1);
+        }).find(fmt::format("v.pvb: record {}: it has a vertex, but its path has none", lonely)) !=
+        std::string::npos);
+  CHECK(said([](Columns& c) { c.path.back() = kPass; }).find("its path is none of its pass") !=
+        std::string::npos);
+  CHECK(said([](Columns& c) {
+          c.path.back() = 4294967295u;
+        }).find("its path is none of its pass") != std::string::npos);
 }
 
 TEST_CASE("Without vertices, with paths that split, or with a pass that lost them, it says so") {

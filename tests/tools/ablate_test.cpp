@@ -130,6 +130,7 @@ TEST_CASE("An ablation says what it leaves out, and what is wrong, in one line")
   refused(out + " --crop 0,0,17x4", 2, "--crop 0,0,17x4");
   refused(out + " --crop 4x4", 2, "write X,Y,WxH");
   refused(out + " --columns 0", 2, "--columns");
+  refused(out + " --columns -1", 2, "--columns: expected a whole number of at least 1");
   refused(out + " --passes 1:2", 2, "1");
   refused(out + " --camera none", 2, "--camera");
   refused(out + " --metric magic", 2, "magic");
@@ -137,4 +138,28 @@ TEST_CASE("An ablation says what it leaves out, and what is wrong, in one line")
   refused(out + " --max-memory 1K", 5, "--max-memory");
   CHECK_FALSE(std::filesystem::exists(folder / "x"));
   CHECK_FALSE(std::filesystem::exists(folder / "x.png"));
+}
+
+TEST_CASE(
+    "A study that cannot be written to its end leaves nothing, and --json may lie in its folder") {
+  const TempFolder folder;
+  render(folder, "cornell", "--passes 2 --size 16x16 --image " + folder / "before.exr");
+  const std::string dump = folder / "cornell.pvb",
+                    reference = " --reference " + folder / "before.exr";
+  const std::size_t files = folder.file_count();
+  // Pictures fit below 10 kB, the table of all rows does not.
+  const std::string confined = "sh -c 'trap \"\" XFSZ; ulimit -f 10; psf ";
+  const std::string pictures = " --pictures --r0 1px,2px,3px,4px,5px,6px,7px,8px,9px,10px";
+  for (const std::string& study :
+       {"ablate " + dump + reference, "converge " + dump + reference + pictures}) {
+    const Outcome full = run(confined + study + " -o " + folder / "new/study" + "'");
+    INFO(study << ": " << full.err);
+    CHECK(full.code == 4);
+    CHECK(full.err.find("File too large") != std::string::npos);
+    CHECK_FALSE(std::filesystem::exists(folder / "new"));
+    CHECK(folder.file_count() == files);
+  }
+  const std::string json = " --json " + folder / "out/copy.json";
+  CHECK(run("psf ablate " + dump + " -o " + folder / "out/" + json).code == 0);
+  CHECK(read_text(folder / "out/copy.json") == read_text(folder / "out/ablate.json"));
 }

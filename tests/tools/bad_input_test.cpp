@@ -147,6 +147,12 @@ TEST_CASE("every mistake is one line, has its exit code and leaves nothing behin
        4, "does not exist"},
       {"psf-render FOLDER/broken_picture.json --image FOLDER/x.exr", 3, "cannot read the picture"},
       {"psf-render FOLDER/far.obj -o FOLDER/x.pvb --sky 1", 5, "would all be in one place"},
+      // counts
+      {"psf filter FOLDER/good.pvb -o FOLDER/x.exr --threads -1", 2,
+       "--threads: expected a whole number from 0 to 4096, got \"-1\""},
+      {"psf-render SAMPLES/cornell.json -o FOLDER/x.pvb --threads 99999999999", 2, "--threads"},
+      {"psf explain FOLDER/good.pvb --pixel 0,0 --top -1", 2, "--top: expected a whole number"},
+      {"psf report FOLDER -o FOLDER/x.html --max-pictures -1", 2, "--max-pictures: expected"},
       // stopping, saving, joining
       {"psf-render SAMPLES/cornell.json --image FOLDER/x.exr --resume", 2, "give -o OUT.pvb"},
       {"psf-render SAMPLES/cornell.json -o FOLDER/text.pvb --resume", 3, "is no path-vertex"},

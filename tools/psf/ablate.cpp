@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "core/json_text.h"
 #include "core/lower.h"
+#include "core/new_folder.h"
 #include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -70,11 +71,13 @@ struct AblateOutputs {
   std::string folder;  // empty: none
 };
 
-// Checks that nothing is written over, and that all can be, and makes the folder.
-void prepare(const AblateOptions& options, const AblateOutputs& outputs, std::size_t rows) {
+// Checks that nothing is written over, and that all can be, and makes the folder, where there is
+// one.
+std::optional<core::NewFolder> prepare(const AblateOptions& options, const AblateOutputs& outputs,
+                                       std::size_t rows) {
   std::vector<std::string> outside = outputs.sheets, inside;
-  const bool json_is_inside = fs::path(options.common.json).parent_path() == outputs.folder;
-  (json_is_inside && !outputs.folder.empty() ? inside : outside).push_back(options.common.json);
+  const bool json_is_inside = lies_in(options.common.json, outputs.folder);
+  (json_is_inside ? inside : outside).push_back(options.common.json);
   if (!outputs.folder.empty()) {
     study::check_none_there(outputs.in_folder("ablate.json"));
     for (const char* name : {"ablate.json", "ablate.csv"})
@@ -88,9 +91,10 @@ void prepare(const AblateOptions& options, const AblateOutputs& outputs, std::si
   all.insert(all.end(), inside.begin(), inside.end());
   core::check_apart(std::vector{options.input, options.reference}, all);
   check_files({}, outside);
-  if (outputs.folder.empty()) return;
-  core::make_folder(outputs.folder);
+  if (outputs.folder.empty()) return std::nullopt;
+  core::NewFolder made(outputs.folder);
   check_files({}, inside);
+  return made;
 }
 
 film::SheetOptions sheet_of(const AblateOptions& options) {
@@ -146,7 +150,7 @@ study::AblateReport report_of(const AblateOptions& options, const run::Dump& dum
 // Measures the rows; their pictures go to the sheet, and to the folder where there is one.
 void measure(const AblateOptions& options, const AblateOutputs& outputs, const run::Dump& dump,
              study::AblateRequest& request, study::AblateReport& report,
-             study::AblationSheet& sheet) {
+             study::AblationSheet& sheet, std::optional<core::NewFolder>& folder) {
   core::Progress progress("ablate", options.common.quiet);
   request.on_progress = [&](std::uint64_t done, std::uint64_t total) {
     progress.advance(done, total);
@@ -155,24 +159,29 @@ void measure(const AblateOptions& options, const AblateOutputs& outputs, const r
   std::size_t number = 0;
   request.on_row = [&](const study::AblationRow& row, const std::vector<Rgb>& picture) {
     sheet.add(row, picture);
-    const std::string name = study::ablation_picture(number++);
-    if (!report.with_pictures) return;
-    write_study_picture(outputs.in_folder(name), view.width, view.height, picture, row.parameters);
+    const std::string file = outputs.in_folder(study::ablation_picture(number++));
+    if (!folder) return;
+    write_study_picture(file, view.width, view.height, picture, row.parameters);
+    folder->add(file);
   };
   study::ablate(dump, request, report.rows);
   progress.finish();
 }
 
 void write_study(study::AblateReport& report, const AblateOutputs& outputs,
-                 const AblateReference& truth) {
+                 const AblateReference& truth, core::NewFolder& folder) {
   if (truth.prepared) {
     const film::Picture& picture = truth.picture;
-    write_study_picture(outputs.in_folder("reference.exr"), picture.width, picture.height,
-                        picture.colors, std::nullopt);
+    const std::string file = outputs.in_folder("reference.exr");
+    write_study_picture(file, picture.width, picture.height, picture.colors, std::nullopt);
+    folder.add(file);
     report.reference["picture"] = "reference.exr";
   }
-  core::write_text_file(outputs.in_folder("ablate.csv"), study::to_csv(report));
+  const std::string table = outputs.in_folder("ablate.csv");
+  core::write_text_file(table, study::to_csv(report));
+  folder.add(table);
   core::write_json_file(outputs.in_folder("ablate.json"), study::to_json(report), 1);
+  folder.keep();
 }
 
 void run(const AblateOptions& options) {
@@ -193,11 +202,11 @@ void run(const AblateOptions& options) {
     shown = {options.reference, truth.picture.colors, metric, options.metrics};
   }
   study::AblationSheet sheet(dump, request, sheet_of(options), shown);
-  prepare(options, outputs, report.rows.size());
+  std::optional<core::NewFolder> folder = prepare(options, outputs, report.rows.size());
   print_notes(notes, options.common.quiet);
 
-  measure(options, outputs, dump, request, report, sheet);
-  if (report.with_pictures) write_study(report, outputs, truth);
+  measure(options, outputs, dump, request, report, sheet, folder);
+  if (folder) write_study(report, outputs, truth, *folder);
   for (const std::string& path : outputs.sheets) sheet.sheet().write(path);
   if (!options.common.json.empty()) {
     core::write_json_file(options.common.json, study::to_json(report), 1);
@@ -239,8 +248,7 @@ void add_ablate(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--crop", options.crop, "show only this part of the pictures, in pixels")
       ->type_name("X,Y,WxH");
-  command->add_option("--columns", options.columns, "pictures beside each other")
-      ->capture_default_str();
+  add_number(*command, "--columns", options.columns, std::size_t{1}, "pictures beside each other");
   command->add_option("--passes", options.passes, kPassesHelp)->type_name("FIRST:LAST");
   command->add_option("--camera", options.camera, "which camera, where the dump has several")
       ->type_name("NAME");

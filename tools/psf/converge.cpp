@@ -65,20 +65,22 @@ study::ConvergeReport describe(const ConvergeOptions& options, const StudyFolder
   return report;
 }
 
-void make_folder(const ConvergeOptions& options, const StudyFolder& folder,
-                 const study::ConvergeRequest& request) {
+core::NewFolder make_folder(const ConvergeOptions& options, const StudyFolder& folder,
+                            const study::ConvergeRequest& request) {
   std::vector<std::string> inputs = options.inputs, names = {"converge.json", "converge.csv"};
   inputs.insert(inputs.end(), options.render_figures.begin(), options.render_figures.end());
   for (std::size_t series = 0; options.study.pictures && series <= request.sets.size(); ++series) {
     for (const std::uint64_t n : request.n) names.push_back(study::picture_name(series, n));
   }
-  folder.make(std::move(inputs), names, options.common.json);
+  return folder.make(std::move(inputs), names, options.common.json);
 }
 
 void print_and_write(const ConvergeOptions& options, const std::string& folder,
-                     const study::ConvergeReport& report) {
+                     const study::ConvergeReport& report, core::NewFolder& made) {
   const study::ConvergePaths paths(folder);
+  made.add(paths.csv);
   write(paths, report);
+  made.keep();
   if (!options.common.json.empty()) {
     core::write_json_file(options.common.json, study::to_json(report), 1);
   }
@@ -107,7 +109,7 @@ void run_dumps(const ConvergeOptions& options) {
   request.camera = folder.camera();
   request.with_times = !options.no_times;
   request.max_memory = options.study.max_memory;
-  make_folder(options, folder, request);
+  core::NewFolder made = make_folder(options, folder, request);
   print_notes(notes, options.common.quiet);
   core::Progress progress("converge", options.common.quiet);
   request.on_progress = [&progress](std::uint64_t done, std::uint64_t total) {
@@ -116,11 +118,11 @@ void run_dumps(const ConvergeOptions& options) {
   if (options.study.pictures) {
     report.with_pictures = true;
     report.reference["picture"] = "reference.exr";
-    folder.write_reference();
+    if (const auto file = folder.write_reference()) made.add(*file);
     request.on_picture = [&](std::optional<std::size_t> set, std::uint64_t n,
                              const std::vector<Rgb>& picture) {
-      folder.write(study::picture_name(set ? *set + 1 : 0, n), picture,
-                   set ? std::optional(sets[*set]) : std::nullopt);
+      made.add(folder.write(study::picture_name(set ? *set + 1 : 0, n), picture,
+                            set ? std::optional(sets[*set]) : std::nullopt));
     };
   }
   report.series = study::converge(options.inputs, reference, folder.reference_picture(), request);
@@ -128,7 +130,7 @@ void run_dumps(const ConvergeOptions& options) {
   if (report.time && !options.no_times) {
     report.speed_ups = study::speed_ups(report.series, *report.time);
   }
-  print_and_write(options, folder.path(), report);
+  print_and_write(options, folder.path(), report, made);
 }
 
 constexpr std::array kAnalyticScenes = {study::AnalyticScene::smooth, study::AnalyticScene::edge};

@@ -114,7 +114,7 @@ void add_explain(CLI::App& app) {
       ->type_name("NAME")
       ->excludes("--path");
   command->add_option("--passes", options.passes, kPassesHelp)->type_name("FIRST:LAST");
-  command->add_option("--top", options.top, "rows of each table")->capture_default_str();
+  add_number(*command, "--top", options.top, std::size_t{0}, "rows of each table");
   command->add_flag("--all", options.all, "all rows, and every path's vertex")->excludes("--top");
   command
       ->add_option("--ply", options.ply,

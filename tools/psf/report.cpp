@@ -13,6 +13,7 @@
 #include "core/output_file.h"
 #include "core/standard_streams.h"
 #include "core/text.h"
+#include "option_values.h"
 #include "verbs.h"
 #include "version.h"
 
@@ -87,10 +88,8 @@ void add_report(CLI::App& app) {
   command->add_option("-o,--output", options->output, "the page")
       ->required()
       ->type_name("REPORT.html");
-  command
-      ->add_option("--max-pictures", options->report.max_pictures,
-                   "pictures to embed of each study; reference, unfiltered and the best come first")
-      ->capture_default_str();
+  add_number(*command, "--max-pictures", options->report.max_pictures, std::size_t{0},
+             "pictures to embed of each study; reference, unfiltered and the best come first");
   add_common(*command, options->common);
   set_example(*command, "psf report sweep-folder converge-folder -o report.html");
   command->callback([options] { run(*options); });

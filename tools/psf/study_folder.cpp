@@ -19,6 +19,11 @@
 
 namespace psf::tools {
 
+bool lies_in(const std::string& file, const std::string& folder) {
+  const std::filesystem::path without_slash = (std::filesystem::path(folder) / "").parent_path();
+  return !folder.empty() && std::filesystem::path(file).parent_path() == without_slash;
+}
+
 void add_study_options(CLI::App& command, StudyOptions& options, bool required) {
   command.add_option("--reference", options.reference, "what is right: an EXR of the same size")
       ->required(required)
@@ -122,8 +127,9 @@ std::string StudyFolder::file(const std::string& name) const {
   return (std::filesystem::path(options_.folder) / name).string();
 }
 
-void StudyFolder::make(std::vector<std::string> inputs, const std::vector<std::string>& names,
-                       const std::string& json) const {
+core::NewFolder StudyFolder::make(std::vector<std::string> inputs,
+                                  const std::vector<std::string>& names,
+                                  const std::string& json) const {
   std::vector<std::string> outputs = {json};
   for (const std::string& name : names) outputs.push_back(file(name));
   std::error_code error;
@@ -133,21 +139,26 @@ void StudyFolder::make(std::vector<std::string> inputs, const std::vector<std::s
   inputs.push_back(options_.reference);
   core::check_apart(inputs, outputs);
   // Nothing is made where --json cannot be; it may lie in the folder itself.
-  const bool json_is_inside = std::filesystem::path(json).parent_path() == options_.folder;
+  const bool json_is_inside = lies_in(json, options_.folder);
   if (!json_is_inside) check_files({}, {json});
-  core::make_folder(options_.folder);
+  core::NewFolder made(options_.folder);
   if (json_is_inside) check_files({}, {json});
+  return made;
 }
 
-void StudyFolder::write_reference() const {
+std::optional<std::string> StudyFolder::write_reference() const {
   std::error_code error;
-  if (std::filesystem::equivalent(options_.reference, file("reference.exr"), error)) return;
-  write("reference.exr", reference_, {});
+  if (std::filesystem::equivalent(options_.reference, file("reference.exr"), error)) {
+    return std::nullopt;
+  }
+  return write("reference.exr", reference_, {});
 }
 
-void StudyFolder::write(const std::string& name, std::span<const Rgb> picture,
-                        const std::optional<filter::Parameters>& parameters) const {
-  write_study_picture(file(name), width_, height_, picture, parameters);
+std::string StudyFolder::write(const std::string& name, std::span<const Rgb> picture,
+                               const std::optional<filter::Parameters>& parameters) const {
+  const std::string path = file(name);
+  write_study_picture(path, width_, height_, picture, parameters);
+  return path;
 }
 
 }  // namespace psf::tools

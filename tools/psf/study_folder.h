@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/new_folder.h"
 #include "core/vec.h"
 #include "film/picture.h"
 #include "filter/parameters/parameters.h"
@@ -26,6 +27,9 @@ struct StudyOptions {
   std::optional<std::uint64_t> max_memory;  // bytes
 };
 
+// Whether a file lies in a folder, which may end in a slash; not where there is no folder.
+[[nodiscard]] bool lies_in(const std::string& file, const std::string& folder);
+
 // `required`: whether --reference must be given.
 void add_study_options(CLI::App& command, StudyOptions& options, bool required);
 
@@ -37,9 +41,11 @@ class StudyFolder {
   StudyFolder(const StudyOptions& options, const run::Dump& dump, std::vector<std::string>& notes);
 
   // Checks that the files `names` in the folder are none of the inputs nor the file of --json
-  // (check_files()), and then makes the folder where it is missing.
-  void make(std::vector<std::string> inputs, const std::vector<std::string>& names,
-            const std::string& json) const;
+  // (check_files()), and then makes the folder where it is missing. It goes again unless the caller
+  // keeps it.
+  [[nodiscard]] core::NewFolder make(std::vector<std::string> inputs,
+                                     const std::vector<std::string>& names,
+                                     const std::string& json) const;
 
   [[nodiscard]] const std::string& path() const { return options_.folder; }
   [[nodiscard]] const run::PassSelection& passes() const { return passes_; }
@@ -50,12 +56,12 @@ class StudyFolder {
   [[nodiscard]] metrics::Metric metric() const { return metric_; }
 
   // Writes the reference as "reference.exr", unless it was read from that file. With --pictures
-  // this is one of the names.
-  void write_reference() const;
+  // this is one of the names. Returns the path where it was written.
+  std::optional<std::string> write_reference() const;
   // Writes a picture of the reference's size as EXR, with `parameters`, if given, as its
-  // attributes.
-  void write(const std::string& name, std::span<const Rgb> picture,
-             const std::optional<filter::Parameters>& parameters) const;
+  // attributes. Returns its path.
+  std::string write(const std::string& name, std::span<const Rgb> picture,
+                    const std::optional<filter::Parameters>& parameters) const;
 
  private:
   [[nodiscard]] std::string file(const std::string& name) const;

@@ -150,7 +150,9 @@ void run(const SweepOptions& options) {
   for (const filter::Parameters& set : asked) {
     if (!file.has(set)) missing.push_back(set);
   }
-  folder.make({options.input}, file_names(options, file, missing.size()), options.common.json);
+  // What is done of a sweep stays where it is stopped: --resume goes on with it.
+  folder.make({options.input}, file_names(options, file, missing.size()), options.common.json)
+      .keep();
   print_notes(notes, options.common.quiet);
   fill(file, missing, dump, folder, options);
 
