@@ -48,8 +48,8 @@ TEST_CASE("an error of the JSON scene names file and JSON path", "[load][json]")
   CHECK(message_of(R"({"materials": [{"name": "a", "reflectance": [0.5, 1.5, 0.5]}]})") ==
         "s.json:1: /materials/0/reflectance/1: expected a number in [0, 1], got 1.5");
   CHECK(message_of(R"({"materials": [{"name": "a", "kind": "velvet"}]})") ==
-        "s.json:1: /materials/0/kind: expected one of diffuse, mirror, glass, conductor, coat, got "
-        "\"velvet\"");
+        "s.json:1: /materials/0/kind: expected one of diffuse, mirror, glass, conductor, coat, "
+        "subsurface, got \"velvet\"");
   CHECK(message_of(R"({"materials": [{"name": "a"}, {"name": "a"}]})") ==
         "s.json:1: /materials/1/name: another material is called \"a\"");
   CHECK(message_of(R"({"materials": [{"kind": "glass"}]})") ==
@@ -88,6 +88,35 @@ TEST_CASE("an error of the JSON scene names file and JSON path", "[load][json]")
   CHECK(message_of(R"({"lights": [{"kind": "point", "position": [0,0,0], "intensity": -1}]})") ==
         "s.json:1: /lights/0/intensity: expected a number >= 0, got -1");
   CHECK(message_of("[1, 2]") == "s.json:1: /: expected an object, got [1,2]");
+}
+
+TEST_CASE("an error of a medium of the JSON scene names file and JSON path", "[load][json]") {
+  const auto medium = [](const std::string& keys) {
+    return message_of(R"({"media": [{"name": "wax")" + keys + "}]}");
+  };
+  CHECK(medium("") ==
+        "s.json:1: /media/0: \"albedo\" and \"mean_free_path\" are missing, or \"sigma_a\" and "
+        "\"sigma_s\"");
+  CHECK(medium(R"(, "albedo": 1)") == "s.json:1: /media/0: the key \"mean_free_path\" is missing");
+  CHECK(medium(R"(, "albedo": 1, "mean_free_path": 0)") ==
+        "s.json:1: /media/0/mean_free_path: expected a number > 0, got 0");
+  CHECK(medium(R"(, "albedo": 1, "mean_free_path": 1, "sigma_s": 1)") ==
+        "s.json:1: /media/0: has \"albedo\" or \"mean_free_path\" and \"sigma_a\" or \"sigma_s\", "
+        "one of both pairs is enough");
+  CHECK(medium(R"(, "sigma_s": 1, "g": 1)") ==
+        "s.json:1: /media/0/g: expected a number in [-0.99, 0.99], got 1");
+  CHECK(message_of(R"({"media": [{"name": "a", "sigma_s": 1}, {"name": "a", "sigma_s": 1}]})") ==
+        "s.json:1: /media/1/name: another medium is called \"a\"");
+  const auto material = [](const std::string& keys) {
+    return message_of(R"({"media": [{"name": "wax", "sigma_s": 1}], "materials": [{"name": "m")" +
+                      keys + "}]}");
+  };
+  CHECK(material(R"(, "kind": "subsurface")") ==
+        "s.json:1: /materials/0: the key \"interior\" is missing");
+  CHECK(material(R"(, "kind": "subsurface", "interior": "waxx")") ==
+        "s.json:1: /materials/0/interior: no medium is called \"waxx\"; did you mean \"wax\"?");
+  CHECK(material(R"(, "interior": "wax")") ==
+        "s.json:1: /materials/0/interior: only materials of the kind subsurface have one");
 }
 
 TEST_CASE("values within values end somewhere", "[load][json]") {

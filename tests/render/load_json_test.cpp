@@ -104,6 +104,33 @@ TEST_CASE("every key of a material arrives", "[load][json]") {
   CHECK(scene.materials[3].reflectance == Rgb(1));
 }
 
+TEST_CASE("every key of a medium arrives, in the unit of the scene's space", "[load][json]") {
+  const TempFolder folder;
+  const auto load = [&](const std::string& radius) {
+    return load_scene(folder.write("s.json", R"({
+      "media": [
+        {"name": "milk", "albedo": [1, 0.75, 0.5], "mean_free_path": [0.5, 1, 2], "g": 0.9},
+        {"name": "ink", "sigma_a": [1, 2, 3], "sigma_s": 4}],
+      "materials": [
+        {"name": "drop", "kind": "subsurface", "interior": "ink", "ior": 1.3, "roughness": 0.2}],
+      "shapes": [{"shape": "sphere", "material": "drop", "center": [0, 0, 0], "radius": )" +
+                                                 radius + "}]}"));
+  };
+  const Scene scene = load("1");
+  REQUIRE(scene.media.size() == 2);
+  CHECK(scene.media[0].sigma_s == Rgb(2, 0.75f, 0.25f));
+  CHECK(scene.media[0].sigma_a == Rgb(0, 0.25f, 0.25f));
+  CHECK(scene.media[0].g == 0.9f);
+  CHECK(scene.media[1].sigma_a == Rgb(1, 2, 3));
+  CHECK(scene.media[1].sigma_s == Rgb(4));
+  CHECK(scene.media[1].g == 0);
+  CHECK(scene.materials[0].kind == MaterialKind::subsurface);
+  CHECK(scene.materials[0].interior == 1);
+  const Scene huge = load("1e9");
+  CHECK(huge.space.exponent > 0);
+  CHECK(huge.media[1].sigma_s.x == std::ldexp(4.0f, huge.space.exponent));
+}
+
 TEST_CASE("transforms apply in order", "[load][json]") {
   const std::string quad =
       R"({"shape": "quad", "material": "white", "origin": [1, 0, 0], "u": [1, 0, 0],

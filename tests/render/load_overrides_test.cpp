@@ -196,6 +196,19 @@ TEST_CASE("whatever shapes the picture changes the hash, names do not", "[load][
     hashes.insert(hash_of(scene));
   }
   CHECK(hashes.size() == changes.size() + 1);
+  base.media.resize(2);
+  base.materials[0].kind = MaterialKind::subsurface;
+  base.materials[0].interior = 0;
+  std::set<std::string> with_media{hash_of(base)};
+  const std::vector<void (*)(Scene&)> media_changes = {
+      [](Scene& s) { s.media[0].sigma_a.x = 1; }, [](Scene& s) { s.media[0].sigma_s.z = 1; },
+      [](Scene& s) { s.media[0].g = 0.5f; }, [](Scene& s) { s.materials[0].interior = 1; }};
+  for (const auto change : media_changes) {
+    Scene scene = base;
+    change(scene);
+    with_media.insert(hash_of(scene));
+  }
+  CHECK(with_media.size() == media_changes.size() + 1);
   Scene renamed = base;
   renamed.name = renamed.materials[0].name = renamed.meshes[0].name = renamed.cameras[0].name =
       "other";

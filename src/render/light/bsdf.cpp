@@ -1,6 +1,8 @@
 // How a surface scatters: evaluation and sampling of its lobes.
 #include "render/light/bsdf.h"
 
+#include "render/light/medium.h"
+
 namespace psf::render {
 
 namespace {
@@ -22,7 +24,8 @@ Bsdf::Bsdf(const Material& material, const Scene& scene, const Vec2& uv, bool fr
     reflectance_ = reflectance_ * texture(material.reflectance_texture).at(uv);
   }
   const bool coated = material.kind == MaterialKind::coat || material.kind == MaterialKind::gloss;
-  if (material.kind == MaterialKind::conductor || coated) {
+  const bool body = material.kind == MaterialKind::subsurface && material.ior > 1;
+  if (material.kind == MaterialKind::conductor || coated || body) {
     roughness_ = material.roughness;
     metalness_ = material.kind == MaterialKind::conductor ? 1
                  : material.kind == MaterialKind::coat    ? material.metalness
@@ -61,6 +64,14 @@ Bsdf::Bsdf(const Material& material, const Scene& scene, const Vec2& uv, bool fr
       coat_ = coat->row(roughness_);
       edge_ = coat->edge()->row(roughness_);
       break;
+    case MaterialKind::subsurface:
+      // A body is seen from outside alone.
+      if (!front) break;
+      eta_ = material.ior;
+      lobes_ = eta_ > 1 ? kInto | kGlossy : kInto;
+      reflectance_ =
+          body_albedo(scene.media[static_cast<std::size_t>(material.interior)], material.ior);
+      break;
   }
 }
 
@@ -93,8 +104,8 @@ Rgb Bsdf::diffuse(float o_z, float i_z) const {
 }
 
 float Bsdf::glossy_probability(const Vec3& o) const {
-  if (lobes_ != (kDiffuse | kGlossy)) return (lobes_ & kGlossy) != 0 ? 1.0f : 0.0f;
-  const float coat = coat_.at(o.z);
+  if (!has_two()) return (lobes_ & kGlossy) != 0 ? 1.0f : 0.0f;
+  const float coat = enters() ? fresnel_dielectric(o.z, eta_) : coat_.at(o.z);
   float glossy =
       (1 - metalness_) * coat + metalness_ * luminance(fresnel_schlick(reflectance_, o.z));
   float base = (1 - metalness_) * (1 - coat) * luminance(reflectance_);
@@ -108,7 +119,7 @@ float Bsdf::glossy_probability(const Vec3& o) const {
 }
 
 Rgb Bsdf::albedo() const {
-  const bool has_diffuse = (lobes_ & kDiffuse) != 0, has_glossy = (lobes_ & kGlossy) != 0;
+  const bool has_diffuse = (lobes_ & (kDiffuse | kInto)) != 0, has_glossy = (lobes_ & kGlossy) != 0;
   if (has_diffuse == has_glossy) {
     if (!has_diffuse) return reflectance_;
     const Rgb f0 = glossy_fresnel(1);
@@ -119,6 +130,11 @@ Rgb Bsdf::albedo() const {
 }
 
 Rgb Bsdf::evaluate(const Vec3& o, const Vec3& i, float& pdf) const {
+  if (lobes_ == kPhase) {
+    pdf = phase(mean_cosine_, -i.z);
+    return Rgb(pdf);
+  }
+  if (lobes_ == kBoundary) return Rgb(evaluate_boundary(o, i, pdf));
   pdf = 0;
   Rgb f(0, 0, 0);
   if (o.z < kLeastCosine || i.z <= 0) return f;
@@ -142,7 +158,7 @@ Rgb Bsdf::evaluate(const Vec3& o, const Vec3& i, float& pdf) const {
 }
 
 Rgb Bsdf::diffuse_share(const Vec3& o, const Vec3& i) const {
-  if (lobes_ == kDiffuse) return {1, 1, 1};
+  if (lobes_ == kDiffuse || (lobes_ & (kBoundary | kPhase)) != 0) return {1, 1, 1};
   if ((lobes_ & kDiffuse) == 0) return {0, 0, 0};
   float pdf;
   const Rgb all = evaluate(o, i, pdf), part = diffuse(o.z, i.z) * i.z;
@@ -154,6 +170,16 @@ Rgb Bsdf::diffuse_share(const Vec3& o, const Vec3& i) const {
 }
 
 bool Bsdf::sample(const Vec3& o, const Vec2& u, float choice, BsdfSample& sample) const {
+  if (lobes_ == kBoundary) return sample_boundary(o, u, choice, sample);
+  if (lobes_ == kPhase) {
+    // z is where the path came from.
+    const Vec3 along = sample_phase(mean_cosine_, u);
+    sample.direction = Vec3(along.x, along.y, -along.z);
+    sample.pdf = phase(mean_cosine_, along.z);
+    sample.weight = Rgb(1, 1, 1);
+    sample.inside = true;
+    return true;
+  }
   if (o.z < kLeastCosine) return false;
   if (lobes_ == kGlass) return sample_glass(o, choice, sample);
   if (lobes_ == kDiffuse && coat_.lower == nullptr) {
@@ -171,6 +197,8 @@ bool Bsdf::sample(const Vec3& o, const Vec2& u, float choice, BsdfSample& sample
       return true;
     }
     sample.direction = reflect(o, Ggx{alpha_ * alpha_}.sample(o, u));
+  } else if (enters()) {
+    return sample_into(o, u, 1 - p_glossy, sample);
   } else {
     sample.direction = cosine_hemisphere(u);
   }

@@ -12,10 +12,12 @@
 namespace psf::render {
 
 struct BsdfSample {
-  Vec3 direction;       // local, unit
-  Rgb weight;           // f cos / pdf
-  float pdf = 0;        // per solid angle; 0 for a perfect mirror or refraction
-  float eta_scale = 1;  // (index left / index entered)^2 where the path crossed a glass surface
+  Vec3 direction;         // local, unit
+  Rgb weight;             // f cos / pdf
+  float pdf = 0;          // per solid angle; 0 for a perfect mirror or refraction
+  float eta_scale = 1;    // (index left / index entered)^2 where the path crossed a glass surface
+  bool inside = false;    // the path goes on in a body with a medium
+  bool straight = false;  // it went on as it came, through a boundary that does not refract
 };
 
 // Directions are local unit vectors that point away from the surface. o is the direction toward the
@@ -33,34 +35,60 @@ struct BsdfSample {
 //   gloss      GGX with Schlick's Fresnel, over the same base; E is a colour.
 //   mirror     perfect reflection.
 //   glass      perfect reflection and refraction; it refracts with probability 1 - Fresnel.
+//   subsurface reflection, perfect or GGX, with the dielectric's Fresnel, and a lobe into the body,
+//              which can be sampled alone: light that it brings back leaves elsewhere. Radiance
+//              that is denser inside is not counted so, since all of it leaves again.
+//
+// Two more are met in a body: of_boundary(), where z is outside and o.z < 0, and of_medium(), in
+// which light goes on in all directions and o is z.
 //
 // GGX with alpha < kLeastAlpha is a perfect mirror.
 class Bsdf {
  public:
   static constexpr std::uint8_t kDiffuse = 1, kGlossy = 2, kGlass = 4;
+  // Into a body, its boundary seen from inside, and scattering in its medium.
+  static constexpr std::uint8_t kInto = 32, kBoundary = 64, kPhase = 128;
 
   // `coat`: for coats the table of the material's ior, for gloss that of Schlick's Fresnel.
   // `front`: the camera is on the front side.
   Bsdf(const Material& material, const Scene& scene, const Vec2& uv, bool front,
        const CoatAlbedo* coat);
+  // `material`: of the kind subsurface.
+  [[nodiscard]] static Bsdf of_boundary(const Material& material);
+  // What was absorbed on the way here has been counted: the albedo is 1.
+  [[nodiscard]] static Bsdf of_medium(const Medium& medium);
 
   [[nodiscard]] bool black() const { return lobes_ == 0; }
   // Whether every lobe is perfect, so that none can be evaluated and light sampling has no use.
-  [[nodiscard]] bool perfect() const { return (lobes_ & kDiffuse) == 0 && alpha_ < kLeastAlpha; }
+  [[nodiscard]] bool perfect() const {
+    return (lobes_ & (kDiffuse | kInto | kPhase)) == 0 && alpha_ < kLeastAlpha;
+  }
+  // Whether evaluate() can be anything but 0.
+  [[nodiscard]] bool evaluates() const {
+    return (lobes_ & (kDiffuse | kPhase)) != 0 || ((lobes_ & ~kInto) != 0 && alpha_ >= kLeastAlpha);
+  }
+  // Whether light goes on in all directions, as in a medium.
+  [[nodiscard]] bool everywhere() const { return lobes_ == kPhase; }
+  // Whether there is a lobe into a body.
+  [[nodiscard]] bool enters() const { return (lobes_ & kInto) != 0; }
   // Whether sample() uses its argument `choice`.
-  [[nodiscard]] bool chooses() const { return lobes_ == kGlass || lobes_ == (kDiffuse | kGlossy); }
-  // Perceptual roughness of the roughest lobe; 1 for diffuse, 0 for mirror and glass.
-  [[nodiscard]] float roughness() const { return (lobes_ & kDiffuse) != 0 ? 1.0f : roughness_; }
+  [[nodiscard]] bool chooses() const {
+    return lobes_ == kGlass || has_two() || (lobes_ == kBoundary && eta_ != 1);
+  }
+  // Perceptual roughness of the roughest lobe; 1 for diffuse and media, 0 for mirror and glass.
+  [[nodiscard]] float roughness() const {
+    return (lobes_ & (kDiffuse | kInto | kPhase)) != 0 ? 1.0f : roughness_;
+  }
   // Perceptual roughness of the smoothest lobe, for which the direction of view matters most.
   [[nodiscard]] float least_roughness() const {
     return (lobes_ & kGlossy) != 0 ? roughness_ : roughness();
   }
-  // Whether there are two lobes and only the diffuse one has a roughness of at least `threshold`. A
-  // perfect lobe never has.
+  // Whether there are two lobes and only the diffuse one, or that into a body, has a roughness of at
+  // least `threshold`. A perfect lobe never has.
   [[nodiscard]] bool straddles(float threshold) const {
-    return lobes_ == (kDiffuse | kGlossy) && (roughness_ < threshold || alpha_ < kLeastAlpha);
+    return has_two() && (roughness_ < threshold || alpha_ < kLeastAlpha);
   }
-  // The probability of sampling the glossy lobe where there is a diffuse lobe too.
+  // The probability of sampling the glossy lobe where there is another one too.
   [[nodiscard]] float glossy_probability(const Vec3& o) const;
   void keep(std::uint8_t lobe) { lobes_ = lobe; }
   // The albedo at normal incidence of the lobes that are kept.
@@ -75,18 +103,30 @@ class Bsdf {
   [[nodiscard]] bool sample(const Vec3& o, const Vec2& u, float choice, BsdfSample& sample) const;
 
  private:
+  Bsdf() = default;
+  [[nodiscard]] bool has_two() const {
+    return lobes_ == (kDiffuse | kGlossy) || lobes_ == (kInto | kGlossy);
+  }
+  // The surface of a body, and places in it: bsdf_body.cpp.
+  [[nodiscard]] bool sample_into(const Vec3& o, const Vec2& u, float probability,
+                                 BsdfSample& sample) const;
+  [[nodiscard]] bool sample_boundary(const Vec3& o, const Vec2& u, float choice,
+                                     BsdfSample& sample) const;
+  [[nodiscard]] float evaluate_boundary(const Vec3& o, const Vec3& i, float& pdf) const;
   [[nodiscard]] Rgb glossy_fresnel(float cosine) const;
   // E of a gloss, from E for a specular reflectance of 1 (`white`) and of 0 (`edge`).
   [[nodiscard]] Rgb gloss_albedo(float white, float edge) const;
   [[nodiscard]] Rgb diffuse(float o_z, float i_z) const;
   [[nodiscard]] bool sample_glass(const Vec3& o, float choice, BsdfSample& sample) const;
 
-  Rgb reflectance_;      // of base or mirror; of a conductor at normal incidence; tint of glass
-  Rgb specular_;         // reflectance of gloss at normal incidence
-  float roughness_ = 0;  // perceptual, of the glossy lobe
+  // Of base or mirror; of a conductor at normal incidence; of a body; tint of glass.
+  Rgb reflectance_{0, 0, 0};
+  Rgb specular_{0, 0, 0};  // reflectance of gloss at normal incidence
+  float roughness_ = 0;    // perceptual, of the glossy lobe
   float alpha_ = 0;
-  float metalness_ = 0;  // 1 for conductor
-  float eta_ = 1;        // index behind over index in front
+  float metalness_ = 0;    // 1 for conductor
+  float eta_ = 1;          // index behind over index in front; of a boundary outside over inside
+  float mean_cosine_ = 0;  // of scattering in a medium
   std::uint8_t lobes_ = 0;
   bool mirror_ = false;     // Fresnel is 1
   CoatAlbedo::Row coat_{};  // lower == null: no coat

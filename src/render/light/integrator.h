@@ -7,6 +7,10 @@
 // a surface seen in the coat. A path that meets the back of a one-sided material ends without a
 // vertex.
 //
+// Where a path enters a body with a medium, that point is x_i, and what comes back from the body,
+// wherever it leaves, is in c_i; a smooth boundary is divided as a coat is. A passage through a body
+// is one surface interaction.
+//
 // The pixel's value is the mean of u_i + alpha_i c_i, without bias except that of max_depth. u_i is
 // the light that does not pass through x_i: emission met on the camera segment, including that of
 // x_i's own surface; the sky; and light sampled at glossy vertices before x_i.

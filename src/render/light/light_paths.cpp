@@ -40,6 +40,10 @@ void LightPaths::trace(std::uint64_t path, Sampler& sampler, std::uint64_t& rays
     visit(vertex);
     if (vertex.at.bsdf.black()) return;
     if (!transport_.scatter_power(vertex.at, walk, sampler)) return;
+    while (walk.body != kNone) {
+      const std::optional<Vertex> inside = transport_.next_inside(walk, sampler, rays);
+      if (!inside || !transport_.scatter_power(*inside, walk, sampler)) return;
+    }
     if (!transport_.survives(walk, sampler)) return;
   }
 }

@@ -36,7 +36,10 @@ class PhotonIntegrator final : public VertexIntegrator {
     Rgb sum;
     Walk walk;
     Surface surface;
-    static_cast<void>(gather_direct(x, segment.depth, branch, walk, surface, sum));
+    // Photons do not stand for what comes through a body.
+    if (gather_direct(x, segment.depth, branch, walk, surface, sum) && walk.passed && enter(walk)) {
+      follow(transport().vertex(surface, walk.ray.direction), walk, branch, sum);
+    }
     return sum;
   }
 

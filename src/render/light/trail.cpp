@@ -76,6 +76,11 @@ void Trail::survive(float factor) {
   }
 }
 
+void Trail::attenuate(const Rgb& factor) {
+  Rgb& carried = beyond_ ? weight_ : last().throughput;
+  carried = carried * factor;
+}
+
 void Trail::end() {
   if (beyond_) return;
   last().outgoing = Vec3(0, 0, 0);

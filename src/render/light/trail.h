@@ -57,6 +57,8 @@ class Trail {
   void leave(const Vec3& direction, float pdf, const Rgb& throughput, std::uint8_t lobe);
   // Russian roulette let it go on, and so it counts so much more; or not.
   void survive(float factor);
+  // It went through a medium.
+  void attenuate(const Rgb& factor);
   void end();
 
  private:

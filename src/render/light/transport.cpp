@@ -15,7 +15,7 @@ std::uint8_t lobe_of(const Vertex& v, const BsdfSample& sample) {
     const Rgb share = v.bsdf.diffuse_share(v.local, sample.direction);
     lobe = luminance(share) >= 0.5f ? Lobe::diffuse : Lobe::glossy;
   }
-  const bool transmitted = sample.direction.z < 0;
+  const bool transmitted = sample.direction.z * v.local.z < 0 && !v.bsdf.everywhere();
   return static_cast<std::uint8_t>(static_cast<int>(lobe) | (transmitted ? kTransmitted : 0));
 }
 
@@ -104,10 +104,13 @@ Rgb Transport::direct_from(std::size_t light, float probability, const Vertex& v
   LightSample sample;
   if (!lights_.sample(light, v.surface, u, sample)) return {0, 0, 0};
   const Vec3 local = v.frame.to_local(sample.direction);
-  if (local.z <= 0 || dot(sample.direction, v.surface.geometric_normal) <= 0) return {0, 0, 0};
+  const bool in_front = local.z > 0 && dot(sample.direction, v.surface.geometric_normal) > 0;
+  if (!in_front && !v.bsdf.everywhere()) return {0, 0, 0};
 
+  Vec3 origin = v.surface.origin_toward(sample.direction);
+  Rgb left(1, 1, 1);
+  if (v.bodies > 0 && !leaves_body(v, sample, origin, left, sampler, rays)) return {0, 0, 0};
   ++rays;
-  const Vec3 origin = v.surface.origin_toward(sample.direction);
   // Both ends lie off their surfaces; stopping a hair short keeps rounding from reaching the
   // light's own.
   const bool occluded =
@@ -122,7 +125,7 @@ Rgb Transport::direct_from(std::size_t light, float probability, const Vertex& v
   const float weight = sample.pdf > 0
                            ? mis_weight(sample.pdf * probability, scatter_pdf) / probability
                            : 1 / probability;
-  const Rgb radiance = f * sample.weight * weight;
+  const Rgb radiance = f * sample.weight * weight * left;
   if (tally.wants_diffuse()) tally.set_diffuse(v.bsdf.diffuse_share(v.local, local));
   tally.add(light, throughput * radiance);
   return radiance;
@@ -132,7 +135,7 @@ bool Transport::select_lobe(Vertex& v, Walk& walk, Sampler& sampler) const {
   if (v.bsdf.straddles(settings_.vertex_roughness)) {
     const float glossy = v.bsdf.glossy_probability(v.local);
     const bool take_glossy = sampler.next_1d() < glossy;
-    v.bsdf.keep(take_glossy ? Bsdf::kGlossy : Bsdf::kDiffuse);
+    v.bsdf.keep(take_glossy ? Bsdf::kGlossy : v.bsdf.enters() ? Bsdf::kInto : Bsdf::kDiffuse);
     const float counts = 1 / (take_glossy ? glossy : 1 - glossy);
     walk.throughput *= counts;
     if (walk.trail != nullptr) walk.trail->scale(counts);
@@ -164,8 +167,16 @@ bool Transport::sample_scattering(const Vertex& v, Sampler& sampler, BsdfSample&
 bool Transport::go_on(const Vertex& v, const BsdfSample& sample, const Vec3& direction,
                       Walk& walk) {
   if (is_black(walk.throughput)) return false;
-  walk.pdf = sample.pdf;
-  walk.from = v.surface.position;
+  // What met nothing on the way is still on that from the last vertex.
+  if (!sample.straight) {
+    walk.pdf = sample.pdf;
+    walk.from = v.surface.position;
+  }
+  if (sample.inside && walk.body == kNone) {
+    walk.bodies = 1;
+    walk.within = Rgb(1, 1, 1);
+  }
+  walk.body = sample.inside ? v.surface.material : kNone;
   walk.ray = {v.surface.origin_toward(direction), normalize(direction)};
   return true;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "render/accel/accel.h"
@@ -19,8 +20,9 @@ struct Vertex {
   Surface surface;
   Bsdf bsdf;
   Frame frame;
-  Vec3 out;    // toward the previous vertex, unit
-  Vec3 local;  // `out` in the frame
+  Vec3 out;        // toward the previous vertex, unit
+  Vec3 local;      // `out` in the frame
+  int bodies = 0;  // of the bodies with a medium in which it is, where it is in any
 };
 
 // What turns f cos for radiance along `v.out`, with light that arrives along `toward`, into that for
@@ -43,6 +45,10 @@ struct Walk {
   Vec3 from{0, 0, 0};        // the last vertex
   int depth = 0;             // surface interactions so far
   Trail* trail = nullptr;    // gets the vertices of the path, where they are wanted
+  int body = kNone;          // material of the body in whose medium the walk is
+  int bodies = 0;            // there: how many bodies of that medium overlap
+  Rgb within{1, 1, 1};       // there: throughput since it came in
+  bool passed = false;       // it came through a body
 };
 
 class Transport {
@@ -80,6 +86,11 @@ class Transport {
   [[nodiscard]] bool scatter(const Vertex& v, Walk& walk, Sampler& sampler) const;
   // The same for a walk that carries power away from a light instead of radiance toward it.
   [[nodiscard]] bool scatter_power(const Vertex& v, Walk& walk, Sampler& sampler) const;
+  // Takes a walk that scatter() sent into a body to where it next can be scattered by scatter(): its
+  // boundary, from inside, or where it has one that does not refract, the next place in the medium.
+  // Nothing where the walk ends. Media in bodies: subsurface.cpp.
+  [[nodiscard]] std::optional<Vertex> next_inside(Walk& walk, Sampler& sampler,
+                                                  std::uint64_t& rays) const;
   // Russian roulette; false where the path ends.
   [[nodiscard]] bool survives(Walk& walk, Sampler& sampler) const;
 
@@ -93,6 +104,15 @@ class Transport {
                                               Vec3& direction, float& correction);
   [[nodiscard]] static bool go_on(const Vertex& v, const BsdfSample& sample, const Vec3& direction,
                                   Walk& walk);
+  // Russian roulette on what a walk lost in a body.
+  [[nodiscard]] static bool survives_inside(Walk& walk, Sampler& sampler);
+  // For a surface that the walk met in a body: whether the walk passes on into another body of the
+  // same medium, or out of one.
+  [[nodiscard]] bool overlaps(const Surface& surface, int material, int& bodies) const;
+  // From a place in a body through its boundary, which does not refract: false where a surface is in
+  // the way. Moves `origin` off the boundary and multiplies `left` by the transmittance.
+  [[nodiscard]] bool leaves_body(const Vertex& v, const LightSample& sample, Vec3& origin,
+                                 Rgb& left, Sampler& sampler, std::uint64_t& rays) const;
   // Tells the trail how `v` scatters.
   static void tell(const Vertex& v, const Walk& walk);
   [[nodiscard]] Rgb direct_from(std::size_t light, float probability, const Vertex& v,

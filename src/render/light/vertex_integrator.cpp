@@ -93,15 +93,34 @@ bool VertexIntegrator::gather_direct(const Vertex& x, int depth, Branch& branch,
   if (!transport.scatter(x, walk, branch.sampler)) return false;
   if (branch.tally.wants_diffuse()) {
     branch.tally.set_diffuse(
-        walk.pdf > 0 ? x.bsdf.diffuse_share(x.local, x.frame.to_local(walk.ray.direction))
-                     : Rgb(0, 0, 0));
+        walk.body != kNone ? Rgb(1, 1, 1)
+        : walk.pdf > 0     ? x.bsdf.diffuse_share(x.local, x.frame.to_local(walk.ray.direction))
+                           : Rgb(0, 0, 0));
   }
   branch.tally.leave_vertex();
+  if (!pass_body(walk, branch, sum)) return false;
   branch.hit_distance = transport.next_surface(walk, surface, branch.rays);
   const bool escaped = std::isinf(branch.hit_distance);
   sum += transport.met(walk, escaped ? nullptr : &surface, branch.tally);
   branch.tally.bounce();
   return !escaped;
+}
+
+bool VertexIntegrator::pass_body(Walk& walk, Branch& branch, Rgb& sum) const {
+  const Transport& transport = lit_->transport;
+  std::uint32_t no_bits = 0;
+  while (walk.body != kNone) {
+    walk.passed = true;
+    const std::optional<Vertex> v = transport.next_inside(walk, branch.sampler, branch.rays);
+    if (!v) return false;
+    const Rgb direct = transport.direct(*v, false, branch.sampler, no_bits, branch.rays,
+                                        branch.tally, walk.throughput);
+    sum += walk.throughput * direct;
+    if (walk.trail != nullptr) walk.trail->add_direct(direct);
+    walk.every_light = false;
+    if (!transport.scatter(*v, walk, branch.sampler)) return false;
+  }
+  return true;
 }
 
 bool VertexIntegrator::enter(Walk& walk) const {
@@ -114,12 +133,15 @@ void VertexIntegrator::follow(Vertex v, Walk& walk, Branch& branch, Rgb& sum) co
   const Transport& transport = lit_->transport;
   std::uint32_t no_bits = 0;
   while (!v.bsdf.black()) {
-    const Rgb direct = transport.direct(v, false, branch.sampler, no_bits, branch.rays,
-                                        branch.tally, walk.throughput);
-    sum += walk.throughput * direct;
-    if (walk.trail != nullptr) walk.trail->add_direct(direct);
+    if (v.bsdf.evaluates()) {
+      const Rgb direct = transport.direct(v, false, branch.sampler, no_bits, branch.rays,
+                                          branch.tally, walk.throughput);
+      sum += walk.throughput * direct;
+      if (walk.trail != nullptr) walk.trail->add_direct(direct);
+    }
     walk.every_light = false;
     if (!transport.scatter(v, walk, branch.sampler)) return;
+    if (!pass_body(walk, branch, sum)) return;
     if (!transport.survives(walk, branch.sampler)) return;
     Surface surface;
     const bool escaped = std::isinf(transport.next_surface(walk, surface, branch.rays));

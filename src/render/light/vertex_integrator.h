@@ -58,6 +58,10 @@ class VertexIntegrator : public Integrator {
   // and what that reflects is still to be added.
   [[nodiscard]] bool gather_direct(const Vertex& x, int depth, Branch& branch, Walk& walk,
                                    Surface& surface, Rgb& sum) const;
+  // Takes a walk that was scattered into a body through it, to where it leaves, and adds to `sum` the
+  // light that is sampled on the way; does nothing for any other. False where the walk ends. However
+  // often it is scattered there, that is the one interaction that has been counted where it came in.
+  [[nodiscard]] bool pass_body(Walk& walk, Branch& branch, Rgb& sum) const;
   // Counts the surface at which the walk has arrived; false where the path may not go on.
   [[nodiscard]] bool enter(Walk& walk) const;
   // Adds to `sum` the light that `v` scatters back along the walk, without what v emits.

@@ -65,6 +65,8 @@ std::unique_ptr<const Integrator> VplIntegrator::for_pass(const SamplerSettings&
 void VplIntegrator::keep(const LightVertex& vertex, Vpls& vpls) const {
   // A light at max_depth would be one surface too many for every x_i.
   if (vertex.at.bsdf.black() || vertex.depth >= settings().max_depth) return;
+  // Light does not leave a body where it came in.
+  if (vertex.at.bsdf.enters()) return;
   LightVertex vpl = vertex;
   const float threshold = settings().vertex_roughness;
   if (vpl.at.bsdf.straddles(threshold)) vpl.at.bsdf.keep(Bsdf::kDiffuse);
@@ -79,7 +81,9 @@ Rgb VplIntegrator::gather(const Vertex& x, const Segment& segment, Branch& branc
   Surface surface;
   if (!gather_direct(x, segment.depth, branch, walk, surface, sum) || !enter(walk)) return sum;
   Vertex y = transport().vertex(surface, walk.ray.direction);
-  if (transport().select_lobe(y, walk, branch.sampler)) {
+  // Virtual lights do not stand for what comes through a body, or out of one.
+  const bool covered = !walk.passed && !y.bsdf.enters();
+  if (covered && transport().select_lobe(y, walk, branch.sampler)) {
     const float cosine_x = dot(x.surface.normal, walk.ray.direction);
     const float cosine_y = dot(y.surface.geometric_normal, y.out);
     const float share =

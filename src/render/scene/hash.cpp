@@ -63,10 +63,17 @@ void add(Digest& digest, const Material& m) {
   digest.add(m.metalness);
   digest.add(m.roughness_metalness_texture);
   digest.add(m.ior);
+  if (m.kind == MaterialKind::subsurface) digest.add(m.interior);
   digest.add(int{m.two_sided});
   digest.add(int{m.emits_two_sided});
   digest.add(m.emission);
   digest.add(m.emission_texture);
+}
+
+void add(Digest& digest, const Medium& medium) {
+  digest.add(medium.sigma_a);
+  digest.add(medium.sigma_s);
+  digest.add(medium.g);
 }
 
 void add(Digest& digest, const Mesh& mesh) {
@@ -116,6 +123,8 @@ std::string hash_of(const Scene& scene) {
   Digest digest;
   add_all(digest, scene.textures);
   add_all(digest, scene.materials);
+  // Scenes without media have the hash that they had before there were any.
+  if (!scene.media.empty()) add_all(digest, scene.media);
   add_all(digest, scene.meshes);
   add_all(digest, scene.spheres);
   add_all(digest, scene.lights);

@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "core/vec.h"
+#include "render/scene/medium.h"
 #include "render/scene/space.h"
 #include "render/scene/texture.h"
 
 namespace psf::render {
 
-constexpr int kNone = -1;  // no texture, no light
+constexpr int kNone = -1;  // no texture, no light, no medium
 
 enum class MaterialKind : std::uint8_t {
   diffuse,    // Lambert
@@ -21,7 +22,10 @@ enum class MaterialKind : std::uint8_t {
   glass,      // smooth dielectric of index `ior`, transmission tinted by reflectance
   conductor,  // GGX, Fresnel by Schlick with `reflectance` at normal incidence
   coat,  // dielectric GGX coat of `ior` over a diffuse base; `metalness` blends it into a conductor
-  gloss  // GGX, Fresnel by Schlick with `specular` at normal incidence, over a diffuse base
+  gloss,  // GGX, Fresnel by Schlick with `specular` at normal incidence, over a diffuse base
+  // The closed surface of a body that is filled with the medium `interior`: a dielectric of `ior`,
+  // smooth or GGX, or without one, where `ior` is 1. The body is seen at its surface.
+  subsurface
 };
 
 struct Material {
@@ -34,6 +38,7 @@ struct Material {
   float metalness = 0;
   int roughness_metalness_texture = kNone;  // glTF: G multiplies roughness, B multiplies metalness
   float ior = 1.5f;
+  int interior = kNone;   // index in Scene::media, of subsurface alone
   bool two_sided = true;  // false: the back side reflects nothing
   bool emits_two_sided = false;
   Rgb emission{0, 0, 0};  // radiance of the front side
@@ -100,6 +105,7 @@ struct Scene {
   std::string hash;
   std::vector<Texture> textures;
   std::vector<Material> materials;
+  std::vector<Medium> media;
   std::vector<Mesh> meshes;
   std::vector<Sphere> spheres;
   std::vector<Light> lights;

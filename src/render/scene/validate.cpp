@@ -28,6 +28,7 @@ class Validation {
   void run() {
     if (scene_.meshes.empty() && scene_.spheres.empty())
       fail("the scene has no shapes, there is nothing to render");
+    for (const Medium& medium : scene_.media) check(medium);
     for (Material& material : scene_.materials) check(material);
     for (Mesh& mesh : scene_.meshes) check(mesh);
     if (dropped_ > 0) {
@@ -51,6 +52,17 @@ class Validation {
     throw Error(ErrorCode::bad_input, path_ + ": " + what);
   }
   void warn(const std::string& what) { scene_.warnings.push_back(path_ + ": " + what); }
+
+  void check(const Medium& medium) const {
+    const Rgb coefficients = medium.sigma_t();
+    const bool fits = coefficients.x >= 0 && coefficients.y >= 0 && coefficients.z >= 0 &&
+                      std::isfinite(max_component(coefficients));
+    if (!fits) {
+      fail(fmt::format(
+          "medium {}: a coefficient is not a finite number >= 0 at the size of the scene",
+          medium.name));
+    }
+  }
 
   void check(Material& material) const {
     const auto say = [&](const std::string& what) {

@@ -6,11 +6,15 @@
 namespace psf::render {
 
 void read_material(const JsonCursor& json, JsonLoad& load) {
-  // In the order of MaterialKind.
-  static constexpr std::string_view kKinds[] = {"diffuse", "mirror", "glass", "conductor", "coat"};
+  static constexpr std::string_view kKinds[] = {"diffuse",   "mirror", "glass",
+                                                "conductor", "coat",   "subsurface"};
+  // In the same order; `gloss` has no name here.
+  static constexpr MaterialKind kValues[] = {MaterialKind::diffuse, MaterialKind::mirror,
+                                             MaterialKind::glass,   MaterialKind::conductor,
+                                             MaterialKind::coat,    MaterialKind::subsurface};
   json.check_keys({"name", "kind", "reflectance", "reflectance_map", "roughness", "metalness",
-                   "roughness_metalness_map", "ior", "two_sided", "emission", "emission_map",
-                   "emits_two_sided"});
+                   "roughness_metalness_map", "ior", "interior", "two_sided", "emission",
+                   "emission_map", "emits_two_sided"});
   Material material;
   const JsonCursor name = json.at("name");
   material.name = name.text();
@@ -18,8 +22,7 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
     if (other.name == material.name)
       name.fail("another material is called \"" + material.name + "\"");
   }
-  if (const auto kind = json.find("kind"))
-    material.kind = static_cast<MaterialKind>(kind->choice(kKinds));
+  if (const auto kind = json.find("kind")) material.kind = kValues[kind->choice(kKinds)];
   // Mirrors and glass lose nothing, and a picture is shown as it is, where nothing else is said.
   const bool lossless =
       material.kind == MaterialKind::mirror || material.kind == MaterialKind::glass;
@@ -28,6 +31,11 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
   if (const auto r = json.find("roughness")) material.roughness = r->number(kUnitRange);
   if (const auto m = json.find("metalness")) material.metalness = m->number(kUnitRange);
   if (const auto i = json.find("ior")) material.ior = i->number({1, 10, "in [1, 10]"});
+  if (material.kind == MaterialKind::subsurface) {
+    material.interior = read_interior(json, load.scene);
+  } else if (const auto interior = json.find("interior")) {
+    interior->fail("only materials of the kind subsurface have one");
+  }
   if (const auto t = json.find("two_sided")) material.two_sided = t->boolean();
   if (const auto t = json.find("emits_two_sided")) material.emits_two_sided = t->boolean();
   if (json.find("emission_map")) material.emission = Rgb(1);

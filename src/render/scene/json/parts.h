@@ -21,6 +21,11 @@ struct JsonLoad {
   explicit JsonLoad(Scene& target) : scene(target), textures(target) {}
 };
 
+// Reads one medium of "media"; its name must be new.
+void read_medium(const JsonCursor& json, Scene& scene);
+// The index of the medium that the key "interior" names, which must be there.
+[[nodiscard]] int read_interior(const JsonCursor& json, const Scene& scene);
+
 // Reads one material of "materials"; its name must be new.
 void read_material(const JsonCursor& json, JsonLoad& load);
 // The index of the material that the key "material" names; kNone where the key is missing and

@@ -1,0 +1,134 @@
+// Random walks in bodies that are filled with a medium, from one place at the boundary to the next.
+#include "render/light/medium.h"
+#include "render/light/transport.h"
+
+namespace psf::render {
+namespace {
+
+// A walk that carries less than this of what it brought in plays Russian roulette.
+constexpr float kFaint = 0.1f;
+
+Vertex medium_vertex(const Medium& medium, int material, const Vec3& position,
+                     const Vec3& direction) {
+  Surface at;
+  at.position = position;
+  at.geometric_normal = at.normal = -direction;
+  at.uv = Vec2(0, 0);
+  at.offset = 0;
+  at.material = material;
+  at.emitter = kNone;
+  at.front = true;
+  return {at, Bsdf::of_medium(medium), Frame(at.normal), -direction, Vec3(0, 0, 1)};
+}
+
+// The other side of the surface that a ray met.
+Vertex boundary_vertex(Surface surface, const Material& material, const Vec3& direction) {
+  surface.geometric_normal = -surface.geometric_normal;
+  surface.normal = -surface.normal;
+  surface.front = true;
+  const Frame frame(surface.normal);
+  return {surface, Bsdf::of_boundary(material), frame, -direction, frame.to_local(-direction)};
+}
+
+}  // namespace
+
+std::optional<Vertex> Transport::next_inside(Walk& walk, Sampler& sampler,
+                                             std::uint64_t& rays) const {
+  const int body = walk.body;
+  const Material& material = scene_.materials[static_cast<std::size_t>(body)];
+  const Medium& medium = scene_.media[static_cast<std::size_t>(material.interior)];
+  const Vec3 start = walk.ray.origin;
+  const auto arrive = [&](Vertex v) {
+    v.bodies = v.bsdf.everywhere() ? walk.bodies : 0;
+    if (walk.trail != nullptr) {
+      walk.trail->arrive(v.surface, walk.ray.direction,
+                         std::sqrt(length_sq(v.surface.position - start)));
+    }
+    return std::optional(v);
+  };
+  for (;;) {
+    const float sampled = sample_distance(medium, walk.ray, walk.within, sampler);
+    ++rays;
+    Hit hit;
+    const bool met = accel_.intersect(walk.ray.origin, walk.ray.direction, hit, sampled);
+    const Flight flight{!met, met ? hit.distance : sampled};
+    const Rgb weight = flight_weight(medium, walk.ray, walk.within, flight);
+    walk.within = walk.within * weight;
+    walk.throughput = walk.throughput * weight;
+    if (walk.trail != nullptr) walk.trail->attenuate(weight);
+    if (is_black(walk.throughput)) return std::nullopt;
+    if (met) {
+      const Surface surface = shapes_.surface(hit, walk.ray.direction);
+      if (overlaps(surface, body, walk.bodies)) {
+        walk.ray.origin = surface.origin_toward(walk.ray.direction);
+        continue;
+      }
+      // Only its own boundary lets a walk out; what else is in a body absorbs.
+      const Material& other = scene_.materials[static_cast<std::size_t>(surface.material)];
+      if (other.interior != material.interior || surface.front) return std::nullopt;
+      return arrive(boundary_vertex(surface, other, walk.ray.direction));
+    }
+    walk.ray.origin += walk.ray.direction * flight.distance;
+    // Out of the scene there is no way back: the surface was not closed.
+    if (!(length_sq(walk.ray.origin - accel_.center()) <=
+          1.01f * accel_.radius() * accel_.radius()))
+      return std::nullopt;
+    if (!survives_inside(walk, sampler)) return std::nullopt;
+    if (material.ior == 1) {
+      return arrive(medium_vertex(medium, body, walk.ray.origin, walk.ray.direction));
+    }
+    walk.ray.direction =
+        normalize(Frame(walk.ray.direction).to_world(sample_phase(medium.g, sampler.next_2d())));
+  }
+}
+
+bool Transport::survives_inside(Walk& walk, Sampler& sampler) {
+  const float carried = max_component(walk.within);
+  if (carried >= kFaint) return true;
+  const float q = carried / kFaint;
+  const bool survived = sampler.next_1d() < q;
+  if (walk.trail != nullptr) survived ? walk.trail->survive(1 / q) : walk.trail->end();
+  if (!survived) return false;
+  walk.within *= 1 / q;
+  walk.throughput *= 1 / q;
+  return true;
+}
+
+bool Transport::overlaps(const Surface& surface, int material, int& bodies) const {
+  const auto medium_of = [&](int index) {
+    return scene_.materials[static_cast<std::size_t>(index)].interior;
+  };
+  if (medium_of(surface.material) != medium_of(material)) return false;
+  if (surface.front) {
+    ++bodies;
+    return true;
+  }
+  if (bodies <= 1) return false;
+  --bodies;
+  return true;
+}
+
+bool Transport::leaves_body(const Vertex& v, const LightSample& sample, Vec3& origin, Rgb& left,
+                            Sampler& sampler, std::uint64_t& rays) const {
+  const int material = v.surface.material;
+  const int interior = scene_.materials[static_cast<std::size_t>(material)].interior;
+  const Medium& medium = scene_.media[static_cast<std::size_t>(interior)];
+  int bodies = v.bodies;
+  for (;;) {
+    float reach = std::numeric_limits<float>::infinity();
+    if (!sample.infinite) reach = std::sqrt(length_sq(sample.target - origin));
+    ++rays;
+    Hit hit;
+    const bool met = accel_.intersect(origin, sample.direction, hit, reach * (1 - 0x1p-17f));
+    const float distance = met ? hit.distance : reach;
+    left = left * transmittance(medium, {origin, sample.direction}, distance, sampler);
+    if (!met || is_black(left)) return !is_black(left);
+    const Surface surface = shapes_.surface(hit, sample.direction);
+    origin = surface.origin_toward(sample.direction);
+    if (overlaps(surface, material, bodies)) continue;
+    const Material& other = scene_.materials[static_cast<std::size_t>(surface.material)];
+    return other.interior == interior && other.ior == 1 && !surface.front;
+  }
+}
+
+}  // namespace psf::render
