@@ -43,7 +43,7 @@ Estimate by_scattering(const Transport& transport, const Surface& from) {
       walk.ray = {from.origin_toward(w), w};
       Surface hit;
       Tally tally;
-      const bool met = !std::isinf(transport.next_surface(walk, hit, rays));
+      const bool met = !std::isinf(transport.next_surface(walk, hit, s, rays));
       sum += double{transport.met(walk, met ? &hit : nullptr, tally).y};
     }
     return sum / kPaths;
@@ -78,6 +78,19 @@ TEST_CASE("Light sampling and scattering agree for every light with extent") {
         std::vector<Rgb>{grey(1), grey(0), grey(3), grey(2), grey(5), grey(0), grey(0), grey(9)});
     scene.spheres.push_back({"", {1, 1, 0.5f}, 0.7f, light});
   }
+  SECTION("a blended sphere") {
+    scene.materials.back().opacity = 0.3f;
+    scene.spheres.push_back({"", {1, 1, 0.5f}, 0.7f, light});
+  }
+  SECTION("a mesh with holes") {
+    scene.materials.back().opacity_texture = 0;
+    scene.materials.back().opacity_cutoff = 0.5f;
+    scene.textures.emplace_back(2, 2, std::vector<Rgb>{grey(1), grey(0), grey(0), grey(1)});
+    Mesh mesh = quad({-1, 1, 1}, {2, 0, 0}, {0, 1, -2}, light);
+    mesh.uvs = {{0, 0}, {3, 0}, {3, 3}, {0, 3}};
+    scene.materials.back().emits_two_sided = true;
+    scene.meshes.push_back(mesh);
+  }
   SECTION("a wide sun, partly below the horizon") {
     Light sun;
     sun.kind = LightKind::directional;
@@ -98,7 +111,8 @@ TEST_CASE("Light sampling and scattering agree for every light with extent") {
   Walk walk;
   walk.ray = {{0, 0.5f, 0}, {0, -1, 0}};
   Surface from;
-  REQUIRE(transport.next_surface(walk, from, rays) == Approx(0.5));
+  Sampler unused = sampler(SamplerKind::sobol, 0, 0);
+  REQUIRE(transport.next_surface(walk, from, unused, rays) == Approx(0.5));
   const Estimate a = by_light(transport, 0, from), b = by_scattering(transport, from);
   CAPTURE(a.mean, a.error, b.mean, b.error);
   CHECK(a.error < 0.003 * a.mean);

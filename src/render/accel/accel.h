@@ -27,12 +27,14 @@ class Accel {
   // reports an error.
   explicit Accel(const Scene& scene);
 
-  // Finds the nearest hit at a distance in (0, reach]; returns false where there is none.
+  // Finds the nearest hit at a distance in (beyond, reach]; returns false where there is none.
   // `direction` is a unit vector.
   [[nodiscard]] bool intersect(const Vec3& origin, const Vec3& direction, Hit& hit,
-                               float reach = std::numeric_limits<float>::infinity()) const {
+                               float reach = std::numeric_limits<float>::infinity(),
+                               float beyond = 0) const {
     RTCRayHit query;
     set_ray(query.ray, origin, direction, reach);
+    query.ray.tnear = beyond;
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     embree_intersect(scene_.get(), query);

@@ -33,7 +33,7 @@ PathRecord AoIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool sha
   walk.ray = camera_ray;
   while (walk.depth++ < settings.max_depth) {
     Surface surface;
-    const float distance = transport_.next_surface(walk, surface, rays);
+    const float distance = transport_.next_surface(walk, surface, sampler, rays);
     if (std::isinf(distance)) return record;
     record.coverage = 1;
     record.distance += distance;
@@ -68,11 +68,10 @@ float AoIntegrator::look(const Vertex& x, Sampler& sampler, std::uint64_t& rays)
   const Vec3 direction = x.frame.to_world(cosine_hemisphere(sampler.next_2d()));
   // Below the geometric surface the surface itself is in the way.
   if (dot(direction, x.surface.geometric_normal) <= 0) return 0;
-  ++rays;
   Hit hit;
   const float reach = transport_.settings().ao_distance;
-  const bool met = transport_.accel().intersect(x.surface.origin_toward(direction),
-                                                normalize(direction), hit, reach);
+  const bool met = transport_.caster().nearest(x.surface.origin_toward(direction),
+                                               normalize(direction), reach, sampler, hit, rays);
   return met ? hit.distance : std::numeric_limits<float>::infinity();
 }
 

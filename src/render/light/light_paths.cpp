@@ -33,7 +33,7 @@ void LightPaths::trace(std::uint64_t path, Sampler& sampler, std::uint64_t& rays
   const int max_depth = transport_.settings().max_depth;
   while (walk.depth < max_depth) {
     Surface surface;
-    if (std::isinf(transport_.next_surface(walk, surface, rays))) return;
+    if (std::isinf(transport_.next_surface(walk, surface, sampler, rays))) return;
     ++walk.depth;
     const LightVertex vertex{transport_.vertex(surface, walk.ray.direction),
                              emission.power * walk.throughput, emission.light, path, walk.depth};

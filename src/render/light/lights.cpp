@@ -19,6 +19,11 @@ Rgb Lights::radiance(const Record& light, const Vec2& uv) {
   return light.texture == nullptr ? light.radiance : light.radiance * light.texture->at(uv);
 }
 
+Rgb Lights::mean_radiance(const Record& light, const Vec2& uv) {
+  const Rgb whole = radiance(light, uv);
+  return light.opacity.full() ? whole : whole * light.opacity.at(uv);
+}
+
 bool Lights::sample(std::size_t light, const Surface& from, const Vec2& u,
                     LightSample& sample) const {
   if (light == count()) {
@@ -78,7 +83,8 @@ float Lights::spot_share(const Record& light, float cosine) {
 }
 
 Vec2 Lights::texture_point(const Record& light, std::size_t triangle, float b1, float b2) const {
-  if (light.texture == nullptr || light.mesh->uvs.empty()) return {b1, b2};
+  const bool plain = light.texture == nullptr && light.opacity.full();
+  if (plain || light.mesh->uvs.empty()) return {b1, b2};
   const auto& [a, b, c] = light.mesh->triangles[triangle];
   return light.mesh->uvs[a] * (1 - b1 - b2) + light.mesh->uvs[b] * b1 + light.mesh->uvs[c] * b2;
 }
@@ -101,7 +107,7 @@ bool Lights::sample_mesh(const Record& light, const Surface& from, Vec2 u,
   if (!(cosine > 0) || !std::isfinite(sample.pdf)) return false;
   sample.target = point + triangle.normal * (side * triangle.offset);
   sample.infinite = false;
-  sample.weight = radiance(light, texture_point(light, k, b1, b2)) * (1 / sample.pdf);
+  sample.weight = mean_radiance(light, texture_point(light, k, b1, b2)) * (1 / sample.pdf);
   return true;
 }
 
@@ -135,7 +141,7 @@ bool Lights::sample_sphere(const Record& light, const Surface& from, bool own, c
   }
   const float offset = (max_abs(light.position) + radius) * kOffsetScale;
   sample.target = light.position + normal * (radius + side * offset);
-  sample.weight = radiance(light, direction_to_uv(normal)) * (1 / sample.pdf);
+  sample.weight = mean_radiance(light, direction_to_uv(normal)) * (1 / sample.pdf);
   return true;
 }
 

@@ -8,6 +8,7 @@
 
 #include "render/light/distribution.h"
 #include "render/light/environment.h"
+#include "render/light/opacity.h"
 #include "render/light/surface.h"
 
 namespace psf::render {
@@ -98,6 +99,7 @@ class Lights {
     float extent = 0;  // sphere: radius; sun: 1 - cos of its angular radius; mesh: 1 / area
     float cos_inner = 1, cos_outer = 0;
     const Texture* texture = nullptr;  // texture of the emission
+    Opacity opacity;                   // of mesh and sphere
     const Mesh* mesh = nullptr;
     std::size_t first = 0;  // mesh: its first triangle in triangles_
     Distribution areas;     // mesh
@@ -112,6 +114,8 @@ class Lights {
   float add(const Mesh& mesh, const Scene& scene);
   float add(const Sphere& sphere, const Scene& scene);
   [[nodiscard]] static Rgb radiance(const Record& light, const Vec2& uv);
+  // The same on the average over what rays meet there: its share that is not there emits nothing.
+  [[nodiscard]] static Rgb mean_radiance(const Record& light, const Vec2& uv);
   // These fill everything but the number of the light. `choice` takes one of two sides.
   void emit_mesh(const Record& light, float choice, Vec2 where, const Vec2& whither,
                  Emission& emission) const;

@@ -120,6 +120,7 @@ float Lights::add(const Mesh& mesh, const Scene& scene) {
   r.radiance = material.emission;
   r.both_sides = material.emits_two_sided;
   r.texture = find_texture(scene, material.emission_texture);
+  r.opacity = Opacity::of(material, scene);
   r.mesh = &mesh;
   r.first = first;
   const auto area = static_cast<float>(r.areas.total());
@@ -137,6 +138,7 @@ float Lights::add(const Sphere& sphere, const Scene& scene) {
   r.radiance = material.emission;
   r.both_sides = material.emits_two_sided;
   r.texture = find_texture(scene, material.emission_texture);
+  r.opacity = Opacity::of(material, scene);
   r.position = sphere.center;
   r.extent = sphere.radius;
   const float power = 4 * kPi * kPi * sphere.radius * sphere.radius * (r.both_sides ? 2.0f : 1.0f) *

@@ -33,7 +33,7 @@ void Lights::emit_mesh(const Record& light, float choice, Vec2 where, const Vec2
   emission.origin =
       triangle.corner + triangle.edge1 * b1 + triangle.edge2 * b2 + normal * triangle.offset;
   emission.direction = normalize(Frame(normal).to_world(cosine_hemisphere(whither)));
-  emission.power = radiance(light, texture_point(light, k, b1, b2)) *
+  emission.power = mean_radiance(light, texture_point(light, k, b1, b2)) *
                    (kPi * (light.both_sides ? 2.0f : 1.0f) / light.extent);
 }
 
@@ -45,8 +45,8 @@ void Lights::emit_sphere(const Record& light, float choice, const Vec2& where, c
   emission.origin = light.position + outward * (light.extent + side * offset);
   emission.direction = normalize(Frame(outward * side).to_world(cosine_hemisphere(whither)));
   const float area = 4 * kPi * light.extent * light.extent;
-  emission.power =
-      radiance(light, direction_to_uv(outward)) * (kPi * area * (light.both_sides ? 2.0f : 1.0f));
+  emission.power = mean_radiance(light, direction_to_uv(outward)) *
+                   (kPi * area * (light.both_sides ? 2.0f : 1.0f));
 }
 
 void Lights::emit_point(const Record& light, const Vec2& whither, Emission& emission) {

@@ -6,7 +6,9 @@
 namespace psf::render {
 namespace {
 
-constexpr float kEndless = std::numeric_limits<float>::infinity();
+constexpr float kEndless = RayCaster::kEndless;
+// A light through blended surfaces has its visibility bit where more than this share of it arrives.
+constexpr float kSeen = 0.5f;
 
 // As the trail has it: a rough lobe is the one that scatters most of the light this way.
 std::uint8_t lobe_of(const Vertex& v, const BsdfSample& sample) {
@@ -26,6 +28,7 @@ Transport::Transport(const Scene& scene, const IntegratorSettings& settings)
       settings_(settings),
       accel_(scene),
       shapes_(scene),
+      caster_(scene, accel_, shapes_),
       lights_(scene, shapes_, accel_.radius()),
       coats_(scene.materials.size()) {
   std::map<float, std::shared_ptr<const CoatAlbedo>> tables;
@@ -42,11 +45,11 @@ Transport::Transport(const Scene& scene, const IntegratorSettings& settings)
   }
 }
 
-float Transport::next_surface(const Walk& walk, Surface& surface, std::uint64_t& rays) const {
-  ++rays;
+float Transport::next_surface(const Walk& walk, Surface& surface, Sampler& sampler,
+                              std::uint64_t& rays) const {
   Hit hit;
-  if (!accel_.intersect(walk.ray.origin, walk.ray.direction, hit)) {
-    return std::numeric_limits<float>::infinity();
+  if (!caster_.nearest(walk.ray.origin, walk.ray.direction, kEndless, sampler, hit, rays)) {
+    return kEndless;
   }
   surface = shapes_.surface(hit, walk.ray.direction);
   if (walk.trail != nullptr) walk.trail->arrive(surface, walk.ray.direction, hit.distance);
@@ -110,22 +113,20 @@ Rgb Transport::direct_from(std::size_t light, float probability, const Vertex& v
   Vec3 origin = v.surface.origin_toward(sample.direction);
   Rgb left(1, 1, 1);
   if (v.bodies > 0 && !leaves_body(v, sample, origin, left, sampler, rays)) return {0, 0, 0};
-  ++rays;
   // Both ends lie off their surfaces; stopping a hair short keeps rounding from reaching the
   // light's own.
-  const bool occluded =
-      sample.infinite
-          ? accel_.occluded(origin, sample.direction, std::numeric_limits<float>::infinity())
-          : accel_.occluded(origin, sample.target - origin, 1 - 0x1p-17f);
-  if (occluded) return {0, 0, 0};
-  if (light < lights_.count()) visibility |= 1u << (light % kEveryLight);
+  const float seen =
+      sample.infinite ? caster_.transmittance(origin, sample.direction, kEndless, rays)
+                      : caster_.transmittance(origin, sample.target - origin, 1 - 0x1p-17f, rays);
+  if (!(seen > 0)) return {0, 0, 0};
+  if (seen > kSeen && light < lights_.count()) visibility |= 1u << (light % kEveryLight);
 
   float scatter_pdf;
   const Rgb f = v.bsdf.evaluate(v.local, local, scatter_pdf);
   const float weight = sample.pdf > 0
                            ? mis_weight(sample.pdf * probability, scatter_pdf) / probability
                            : 1 / probability;
-  const Rgb radiance = f * sample.weight * weight * left;
+  const Rgb radiance = f * sample.weight * (weight * seen) * left;
   if (tally.wants_diffuse()) tally.set_diffuse(v.bsdf.diffuse_share(v.local, local));
   tally.add(light, throughput * radiance);
   return radiance;

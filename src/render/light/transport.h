@@ -10,6 +10,7 @@
 #include "render/light/frame.h"
 #include "render/light/integrator.h"
 #include "render/light/lights.h"
+#include "render/light/opacity.h"
 #include "render/light/surface.h"
 #include "render/light/tally.h"
 
@@ -61,11 +62,14 @@ class Transport {
 
   [[nodiscard]] const IntegratorSettings& settings() const { return settings_; }
   [[nodiscard]] const Accel& accel() const { return accel_; }
+  [[nodiscard]] const RayCaster& caster() const { return caster_; }
   [[nodiscard]] const Lights& lights() const { return lights_; }
   [[nodiscard]] bool samples_every_light() const { return lights_.count() <= kEveryLight; }
 
-  // Follows the walk's ray to the next surface and returns the distance; infinity for a miss.
-  [[nodiscard]] float next_surface(const Walk& walk, Surface& surface, std::uint64_t& rays) const;
+  // Follows the walk's ray to the next surface, through masks and blended ones, and returns the
+  // distance; infinity for a miss.
+  [[nodiscard]] float next_surface(const Walk& walk, Surface& surface, Sampler& sampler,
+                                   std::uint64_t& rays) const;
   [[nodiscard]] Vertex vertex(const Surface& surface, const Vec3& direction) const;
 
   // The emitted light that the walk's ray met at `surface`, or in the sky where it is null, times
@@ -74,7 +78,7 @@ class Transport {
 
   // The radiance that `v` scatters directly from the lights, weighted against scattering. With
   // `every` each light is sampled once, else one light chosen by power. Sets the visibility bit of
-  // each sampled light that `v` sees. Adds `throughput` times the radiance to `tally`.
+  // each sampled light that `v` sees, by more than half through what is blended. Adds `throughput` times the radiance to `tally`.
   [[nodiscard]] Rgb direct(const Vertex& v, bool every, Sampler& sampler, std::uint32_t& visibility,
                            std::uint64_t& rays, Tally& tally, const Rgb& throughput) const;
 
@@ -123,6 +127,7 @@ class Transport {
   IntegratorSettings settings_;
   Accel accel_;
   Shapes shapes_;
+  RayCaster caster_;
   Lights lights_;
   std::vector<std::shared_ptr<const CoatAlbedo>> coats_;  // by material; equal ior share a table
 };

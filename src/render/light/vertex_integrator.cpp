@@ -15,7 +15,7 @@ PathRecord VertexIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool
   std::uint32_t no_bits = 0;
   for (;;) {
     Surface surface;
-    const float distance = transport.next_surface(walk, surface, rays);
+    const float distance = transport.next_surface(walk, surface, sampler, rays);
     if (std::isinf(distance)) {
       record.unfiltered += transport.met(walk, nullptr, seen);
       return record;
@@ -99,7 +99,7 @@ bool VertexIntegrator::gather_direct(const Vertex& x, int depth, Branch& branch,
   }
   branch.tally.leave_vertex();
   if (!pass_body(walk, branch, sum)) return false;
-  branch.hit_distance = transport.next_surface(walk, surface, branch.rays);
+  branch.hit_distance = transport.next_surface(walk, surface, branch.sampler, branch.rays);
   const bool escaped = std::isinf(branch.hit_distance);
   sum += transport.met(walk, escaped ? nullptr : &surface, branch.tally);
   branch.tally.bounce();
@@ -144,7 +144,8 @@ void VertexIntegrator::follow(Vertex v, Walk& walk, Branch& branch, Rgb& sum) co
     if (!pass_body(walk, branch, sum)) return;
     if (!transport.survives(walk, branch.sampler)) return;
     Surface surface;
-    const bool escaped = std::isinf(transport.next_surface(walk, surface, branch.rays));
+    const bool escaped =
+        std::isinf(transport.next_surface(walk, surface, branch.sampler, branch.rays));
     sum += transport.met(walk, escaped ? nullptr : &surface, branch.tally);
     if (escaped || !enter(walk)) return;
     v = transport.vertex(surface, walk.ray.direction);

@@ -144,12 +144,14 @@ Rgb VplIntegrator::connect(const Vertex& x, const LightVertex& vpl, float near,
                 vpl.at.bsdf.evaluate(seen.to_local(-toward), arriving, no_pdf);
   if (is_black(f)) return f;
 
-  ++rays;
   const Vec3 origin = x.surface.origin_toward(toward), target = y.origin_toward(-toward);
-  if (transport().accel().occluded(origin, target - origin, 1 - 0x1p-17f)) return {0, 0, 0};
+  const float through =
+      transport().caster().transmittance(origin, target - origin, 1 - 0x1p-17f, rays);
+  if (!(through > 0)) return {0, 0, 0};
   // evaluate() is times the cosine, which power has in it already.
   const float area = dot(vpl.at.out, y.geometric_normal) * distance_sq;
-  return f * vpl.power * (vpl_share(at_x.z, cosine_y, distance_sq, near) * cosine_y / area);
+  return f * vpl.power *
+         (vpl_share(at_x.z, cosine_y, distance_sq, near) * cosine_y / area * through);
 }
 
 }  // namespace

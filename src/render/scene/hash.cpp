@@ -68,6 +68,11 @@ void add(Digest& digest, const Material& m) {
   digest.add(int{m.emits_two_sided});
   digest.add(m.emission);
   digest.add(m.emission_texture);
+  if (m.opacity < 1 || m.opacity_texture != kNone) {
+    digest.add(m.opacity);
+    digest.add(m.opacity_texture);
+    digest.add(m.opacity_cutoff);
+  }
 }
 
 void add(Digest& digest, const Medium& medium) {

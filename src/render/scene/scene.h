@@ -38,8 +38,12 @@ struct Material {
   float metalness = 0;
   int roughness_metalness_texture = kNone;  // glTF: G multiplies roughness, B multiplies metalness
   float ior = 1.5f;
-  int interior = kNone;   // index in Scene::media, of subsurface alone
-  bool two_sided = true;  // false: the back side reflects nothing
+  int interior = kNone;  // index in Scene::media, of subsurface alone
+  // The share of the surface that is there: rays pass the rest. The red of the picture multiplies it.
+  float opacity = 1;
+  int opacity_texture = kNone;
+  float opacity_cutoff = 0;  // above 0: all of it is there from this opacity on, and nothing below
+  bool two_sided = true;     // false: the back side reflects nothing
   bool emits_two_sided = false;
   Rgb emission{0, 0, 0};  // radiance of the front side
   int emission_texture = kNone;

@@ -19,6 +19,8 @@ namespace psf::render {
 enum class TextureUse {
   reflectance,  // colours in [0, 1]
   numbers,      // as stored, in [0, 1]
+  alpha,        // the alpha channel as grey numbers; 1 where there is none
+  opacity,      // the same; where there is no alpha, the luminance of the numbers as stored
   radiance      // colours of at least 0; premultiplied colours stay premultiplied
 };
 

@@ -167,6 +167,26 @@ class ValueRange {
   std::string first_;
 };
 
+// What of a texel is there, from all its channels.
+class TexelOpacity {
+ public:
+  TexelOpacity(const OIIO::ImageSpec& spec, const ColourChannels& colour, TextureUse use)
+      : colour_(colour) {
+    if (spec.alpha_channel >= 0) alpha_ = static_cast<std::size_t>(spec.alpha_channel);
+    whole_ = !alpha_ && use == TextureUse::alpha;
+  }
+  [[nodiscard]] Rgb operator()(const float* v) const {
+    if (whole_) return Rgb(1);
+    if (alpha_) return Rgb(v[*alpha_]);
+    return Rgb(luminance(Rgb(v[colour_.red], v[colour_.green], v[colour_.blue])));
+  }
+
+ private:
+  ColourChannels colour_;
+  std::optional<std::size_t> alpha_;
+  bool whole_;
+};
+
 }  // namespace
 
 Texture Texture::load(const std::string& path, TextureUse use, std::vector<std::string>& notes,
@@ -203,7 +223,8 @@ Texture Texture::read(const std::string& name, std::span<const unsigned char> by
 
   Texture texture(map.width(), map.height());
   const std::size_t count = texture.width_ * texture.height_;
-  if (spec.format == OIIO::TypeDesc::UINT8 && !c.alpha) {
+  const bool of_opacity = use == TextureUse::alpha || use == TextureUse::opacity;
+  if (spec.format == OIIO::TypeDesc::UINT8 && !c.alpha && !of_opacity) {
     const auto values = read_values<std::uint8_t>(name, input, spec, notes);
     Table table{};
     for (std::size_t i = 0; i < table.size(); ++i) table[i] = curve(static_cast<float>(i) / 255.0f);
@@ -221,12 +242,17 @@ Texture Texture::read(const std::string& name, std::span<const unsigned char> by
   const auto values = read_values<float>(name, input, spec, notes);
   const auto matrix =
       plain || use == TextureUse::numbers ? std::optional<Imath::M33f>() : to_rec709(spec);
+  const TexelOpacity opacity(spec, c, use);
   ValueRange range(name, use, texture.width_);
   texture.texels_.resize(count, Rgb(0));
   for (std::size_t i = 0; i < count; ++i) {
     const auto stored = map.stored(i % texture.width_, i / texture.width_);
     if (!stored) continue;
     const float* v = &values[*stored * channels];
+    if (of_opacity) {
+      texture.texels_[i] = range.clamp(opacity(v), i);
+      continue;
+    }
     const float alpha = c.alpha ? v[*c.alpha] : 1;
     const float divisor = alpha > 0 ? alpha : 1;  // under no alpha the colour is as stored
     Rgb colour(curve(v[c.red] / divisor), curve(v[c.green] / divisor), curve(v[c.blue] / divisor));

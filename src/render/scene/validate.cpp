@@ -84,6 +84,7 @@ class Validation {
     }
     unit(material.roughness, "the roughness");
     unit(material.metalness, "the metalness");
+    unit(material.opacity, "the opacity");
     if (!(material.ior >= 1 && material.ior <= 10)) {
       say(fmt::format("the index of refraction is {}, expected a number in [1, 10]", material.ior));
     }

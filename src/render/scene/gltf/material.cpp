@@ -60,6 +60,7 @@ struct Reader {
   void emission();
   void transmission(const JsonCursor& extension);
   void unlit();
+  void alpha();
   void note_others();
   Material convert();
 };
@@ -198,11 +199,25 @@ void Reader::unlit() {
   leave_out("unlit materials shine in their colour (KHR_materials_unlit)");
 }
 
-void Reader::note_others() {
+// Alpha is that of the base colour: its factor, and the same picture again.
+void Reader::alpha() {
   static constexpr std::string_view kModes[] = {"OPAQUE", "MASK", "BLEND"};
-  const auto mode = json.find("alphaMode");
-  if (mode && mode->choice(kModes) != 0) leave_out("alpha is left out, materials are opaque");
-  if (const auto cutoff = json.find("alphaCutoff")) (void)cutoff->number(kNonNegative);
+  enum : std::size_t { opaque, mask };
+  const auto found = json.find("alphaMode");
+  const std::size_t mode = found ? found->choice(kModes) : opaque;
+  const float cutoff = number(json, "alphaCutoff", 0.5f, kNonNegative);
+  if (mode == opaque || (mode == mask && cutoff == 0)) return;
+  if (mode == mask) material.opacity_cutoff = cutoff;
+  const auto glossy = find_extension(json, "KHR_materials_pbrSpecularGlossiness");
+  const auto pbr = glossy ? glossy : json.find("pbrMetallicRoughness");
+  if (!pbr) return;
+  if (const auto factor = pbr->find(glossy ? "diffuseFactor" : "baseColorFactor"))
+    material.opacity = static_cast<float>(factor->numbers(4, kUnit)[3]);
+  material.opacity_texture =
+      texture(*pbr, glossy ? "diffuseTexture" : "baseColorTexture", TextureUse::alpha, "alpha");
+}
+
+void Reader::note_others() {
   if (json.find("normalTexture")) leave_out("normal maps are left out");
   if (json.find("occlusionTexture"))
     leave_out("occlusion maps are left out, the paths find it themselves");
@@ -228,6 +243,7 @@ Material Reader::convert() {
   if (const auto extension = find_extension(json, "KHR_materials_transmission"))
     transmission(*extension);
   if (find_extension(json, "KHR_materials_unlit")) unlit();
+  alpha();
   note_others();
   return std::move(material);
 }

@@ -14,7 +14,7 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
                                              MaterialKind::coat,    MaterialKind::subsurface};
   json.check_keys({"name", "kind", "reflectance", "reflectance_map", "roughness", "metalness",
                    "roughness_metalness_map", "ior", "interior", "two_sided", "emission",
-                   "emission_map", "emits_two_sided"});
+                   "emission_map", "emits_two_sided", "opacity", "opacity_map", "opacity_cutoff"});
   Material material;
   const JsonCursor name = json.at("name");
   material.name = name.text();
@@ -38,6 +38,8 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
   }
   if (const auto t = json.find("two_sided")) material.two_sided = t->boolean();
   if (const auto t = json.find("emits_two_sided")) material.emits_two_sided = t->boolean();
+  if (const auto o = json.find("opacity")) material.opacity = o->number(kUnitRange);
+  if (const auto o = json.find("opacity_cutoff")) material.opacity_cutoff = o->number(kUnitRange);
   if (json.find("emission_map")) material.emission = Rgb(1);
   if (const auto e = json.find("emission")) material.emission = e->rgb(kNonNegative);
 
@@ -51,6 +53,7 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
   material.reflectance_texture = texture("reflectance_map", TextureUse::reflectance);
   material.emission_texture = texture("emission_map", TextureUse::radiance);
   material.roughness_metalness_texture = texture("roughness_metalness_map", TextureUse::numbers);
+  material.opacity_texture = texture("opacity_map", TextureUse::opacity);
   load.scene.materials.push_back(std::move(material));
 }
 

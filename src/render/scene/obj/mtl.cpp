@@ -94,6 +94,8 @@ class MtlReader {
       material().map_kd = read_map();
     } else if (statement == "map_ke") {
       material().map_ke = read_map();
+    } else if (statement == "map_d") {
+      material().map_d = read_map();
     } else if (std::find(std::begin(kLackedNumbers), std::end(kLackedNumbers), statement) !=
                std::end(kLackedNumbers)) {
       if (read_number(-kAny, kAny) != 0) left_out_.add(lines_.statement());

@@ -25,7 +25,7 @@ struct MtlMaterial {
     std::string file;      // empty: no map
     std::size_t line = 0;  // line of the statement
   };
-  Map map_kd, map_ke;
+  Map map_kd, map_ke, map_d;
 };
 
 // Reads every statement of a library and checks its numbers. Statements without effect are added to

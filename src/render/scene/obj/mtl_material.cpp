@@ -34,7 +34,8 @@ Rgb square_root(const Rgb& c) {
 
 // Sets kind and the numbers of reflection.
 void set_reflection(const MtlMaterial& mtl, Material& material, LeftOut& left_out) {
-  const float opaque = opacity(mtl, left_out);
+  // A picture of opacities says where a sheet is, no body of glass has one.
+  const float opaque = mtl.map_d.file.empty() ? material.opacity : 1;
   const int illum = mtl.illum.value_or(mtl.ks ? 2 : 1);
   const bool refracts = illum == 4 || illum == 6 || illum == 7 || illum == 9;
   const Rgb specular = mtl.ks.value_or(Rgb(0));
@@ -46,12 +47,13 @@ void set_reflection(const MtlMaterial& mtl, Material& material, LeftOut& left_ou
 
   if (refracts || opaque < 0.5f) {
     material.kind = MaterialKind::glass;
+    material.opacity = 1;
     // Light crosses a closed body's surface twice.
     material.reflectance = square_root(mtl.tf.value_or(Rgb(1)));
     if (has_map) left_out.add("map_Kd of glass");
+    if (!mtl.map_d.file.empty()) left_out.add("map_d of glass");
     return;
   }
-  if (opaque < 1) left_out.add("d from 0.5 up (drawn opaque)");
   if (mtl.pr || mtl.pm) {
     material.kind = MaterialKind::coat;
     material.roughness = mtl.pr ? *mtl.pr : mtl.ns ? roughness_of(*mtl.ns) : 0.5f;
@@ -74,6 +76,7 @@ Material to_material(const MtlMaterial& mtl, const std::string& path, TextureTab
   Material material;
   material.name = mtl.name;
   material.two_sided = material.emits_two_sided = true;
+  material.opacity = opacity(mtl, left_out);
   set_reflection(mtl, material, left_out);
   material.emission = mtl.ke.value_or(Rgb(0));
   if (!mtl.map_ke.file.empty() && is_black(material.emission)) material.emission = Rgb(1);
@@ -89,6 +92,8 @@ Material to_material(const MtlMaterial& mtl, const std::string& path, TextureTab
       material.kind == MaterialKind::gloss)
     material.reflectance_texture = load(mtl.map_kd, TextureUse::reflectance);
   material.emission_texture = load(mtl.map_ke, TextureUse::radiance);
+  if (material.kind != MaterialKind::glass)
+    material.opacity_texture = load(mtl.map_d, TextureUse::opacity);
   // Nothing glows for want of its picture.
   if (material.emission_texture == kNone && !mtl.map_ke.file.empty()) material.emission = Rgb(0);
   return material;
