@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "core/error.h"
-#include "formats/layout/chunk.h"
+#include "formats/check/check_chunks.h"
 #include "formats/layout/head_frame.h"
 #include "formats/layout/layout.h"
 #include "formats/layout/metadata.h"
@@ -26,13 +25,13 @@ bool is_zero(std::byte value) {
 class FrameCheck {
  public:
   FrameCheck(const File& file, Walk& walk, CheckResult& report)
-      : file_(file), walk_(walk), report_(report) {}
+      : file_(file), walk_(walk), report_(report), chunks_(file, walk, report) {}
 
   void run() {
     check_head();
     check_slot();
     check_commits();
-    check_chunks();
+    chunks_.check();
     add_bad_regions();
   }
 
@@ -60,7 +59,7 @@ class FrameCheck {
         [&](const Prefix& prefix) { return prefix.offset == place && prefix.type == kSlotType; });
     if (slot == walk_.frames.end()) {
       report_.faults.push_back({place, "SLOT", {}, {}, 0, 0, "it cannot be read"});
-      drop_region(place);
+      drop_region(walk_, place);
       return;
     }
     check_zeros(file_, *slot, kPrefix, kSlotFirst, report_);
@@ -119,8 +118,11 @@ class FrameCheck {
                                         [](const WalkedCommit& other, std::uint64_t offset) {
                                           return other.frame.prefix.offset < offset;
                                         });
-    return found != walk_.commits.end() && found->frame.prefix.offset == commit.base &&
-           found->commit.chunks == commit.first_chunk;
+    if (found == walk_.commits.end() || found->frame.prefix.offset != commit.base) return false;
+    for (std::size_t table = 0; table < walk_.head.head.table_count(); ++table) {
+      if (found->commit.chunks_of(table) != commit.first_chunk_of(table)) return false;
+    }
+    return true;
   }
 
   void check_sections(const WalkedCommit& walked) {
@@ -133,10 +135,10 @@ class FrameCheck {
     }
     check_zeros(file_, prefix, place, prefix.length, report_);
     if (const auto index = section(walked, commit.index, "index")) {
-      merge_index(walked, 0, decode_index(*index));
+      chunks_.merge_index(walked, 0, decode_index(*index));
     }
     for (std::size_t k = 0; k < commit.tables.size(); ++k) {
-      merge_index(walked, k + 1, commit.tables[k].index);
+      chunks_.merge_index(walked, k + 1, commit.tables[k].index);
     }
     const auto head = section(walked, commit.head, "copy of HEAD");
     const Frame& original = walk_.head.frame;
@@ -158,115 +160,6 @@ class FrameCheck {
     }
   }
 
-  void merge_index(const WalkedCommit& walked, std::size_t table,
-                   const std::vector<ChunkEntry>& entries) {
-    const Head& head = walk_.head.head;
-    for (const ChunkEntry& entry : entries) {
-      const auto [found, inserted] =
-          walk_.chunks.try_emplace(entry.offset, WalkedChunk{table, entry, false});
-      const WalkedChunk& other = found->second;
-      if (inserted || (other.entry == entry && other.table == table)) continue;
-      add(walked.frame.prefix,
-          fmt::format("its index says {} where the chunk at byte {} says {}",
-                      table_range(head, table, entry.first, entry.count), entry.offset,
-                      table_range(head, other.table, other.entry.first, other.entry.count)));
-    }
-  }
-
-  // What was found of a table up to a place in the file.
-  struct Found {
-    std::uint64_t records = 0, chunks = 0, passes = 0;
-  };
-
-  // Every record once, in order; totals of every commit.
-  void check_chunks() {
-    std::vector<Found> found(walk_.head.head.table_count());
-    auto commit = walk_.commits.begin();
-    const auto pass_commits = [&](std::uint64_t until) {
-      for (; commit != walk_.commits.end() && commit->frame.prefix.offset < until; ++commit) {
-        check_totals(*commit, found);
-      }
-    };
-    for (const auto& [offset, chunk] : walk_.chunks) {
-      pass_commits(offset);
-      const std::uint64_t passes =
-          commit == walk_.commits.end() ? std::uint64_t{1} << 32 : commit->commit.passes;
-      check_place(chunk, found[chunk.table], passes);
-      if (!chunk.readable) add_unreadable(chunk, found[chunk.table]);
-      Found& of = found[chunk.table];
-      of.records = chunk.entry.first + chunk.entry.count;
-      of.passes = chunk.entry.pass + std::uint64_t{1};
-      ++of.chunks;
-    }
-    pass_commits(walk_.end);
-  }
-
-  void check_totals(const WalkedCommit& walked, const std::vector<Found>& found) {
-    const Commit& told = walked.commit;
-    for (std::size_t k = 0; k < found.size(); ++k) {
-      const Found& of = found[k];
-      const std::uint64_t records = told.records_of(k), chunks = told.chunks_of(k);
-      const bool passes = k > 0 || told.passes == of.passes;
-      if (records == of.records && chunks == of.chunks && passes) continue;
-      add_fault(
-          k, {walked.frame.prefix.offset,
-              "CMIT",
-              {},
-              {},
-              of.records,
-              records > of.records ? records - of.records : 0,
-              fmt::format("its totals are {} records, {} chunks, {} passes; found are {}, {}, {}",
-                          records, chunks, told.passes, of.records, of.chunks, of.passes)});
-    }
-  }
-
-  // `passes`: those of the next commit. A pass may be without records of a table.
-  void check_place(const WalkedChunk& chunk, const Found& before, std::uint64_t passes) {
-    const ChunkEntry& entry = chunk.entry;
-    const std::uint64_t next = entry.pass + std::uint64_t{1};
-    const bool in_pass = chunk.table == 0 ? entry.pass == before.passes || next == before.passes
-                                          : next >= before.passes && next <= passes;
-    if (entry.first == before.records && in_pass) return;
-    add_fault(chunk.table,
-              {entry.offset,
-               chunk_type(chunk),
-               before.chunks,
-               {},
-               before.records,
-               entry.first > before.records ? entry.first - before.records : 0,
-               fmt::format("it holds {} of pass {}; expected are records from {} on, pass {}",
-                           record_range(entry.first, entry.count), entry.pass, before.records,
-                           chunk.table == 0 ? before.passes : passes - 1)});
-  }
-
-  void add_unreadable(const WalkedChunk& chunk, const Found& before) {
-    const ChunkEntry& entry = chunk.entry;
-    const FrameResult result = read_frame(file_, walk_.file_size, entry.offset, &walk_.uuid());
-    add_fault(chunk.table, {entry.offset,
-                            chunk_type(chunk),
-                            before.chunks,
-                            {},
-                            entry.first,
-                            entry.count,
-                            result.fault.empty() ? "its directory is wrong" : result.fault});
-    drop_region(entry.offset);
-  }
-
-  [[nodiscard]] static std::string chunk_type(const WalkedChunk& chunk) {
-    return type_name(chunk.table == 0 ? kChunkType : kTableChunkType);
-  }
-
-  void add_fault(std::size_t table, Fault fault) {
-    if (table > 0) fault.table = walk_.head.head.table_name(table);
-    report_.faults.push_back(std::move(fault));
-  }
-
-  void drop_region(std::uint64_t begin) {
-    walk_.bad.erase(std::remove_if(walk_.bad.begin(), walk_.bad.end(),
-                                   [&](const Region& region) { return region.begin == begin; }),
-                    walk_.bad.end());
-  }
-
   void add_bad_regions() {
     for (Region& region : walk_.bad) {
       const bool commit = commit_places_.contains(region.begin);
@@ -284,6 +177,7 @@ class FrameCheck {
   const File& file_;
   Walk& walk_;
   CheckResult& report_;
+  ChunkCheck chunks_;
   std::set<std::uint64_t> commit_places_;  // where a commit should be but cannot be read
 };
 

@@ -95,6 +95,10 @@ Walk walk_frames(const File& file, HeadFrame head) {
   return walk;
 }
 
+void drop_region(Walk& walk, std::uint64_t begin) {
+  std::erase_if(walk.bad, [&](const Region& region) { return region.begin == begin; });
+}
+
 void drop_behind(Walk& walk, std::uint64_t end) {
   drop(walk.frames, end, [](const Prefix& prefix) { return prefix.offset; });
   drop(walk.bad, end, [](const Region& region) { return region.begin; });

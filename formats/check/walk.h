@@ -48,6 +48,9 @@ struct Walk {
 // frame of an unknown type.
 [[nodiscard]] Walk walk_frames(const File& file, HeadFrame head);
 
+// Takes the region that begins at `begin` out of the bad ones: what it is was told by its name.
+void drop_region(Walk& walk, std::uint64_t begin);
+
 // Removes from `walk` everything from the offset `end` on.
 void drop_behind(Walk& walk, std::uint64_t end);
 

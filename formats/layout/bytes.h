@@ -41,7 +41,9 @@ class ByteWriter {
 // Decodes bytes one after the other. Throws Error{bad_input} where they end too early.
 class ByteReader {
  public:
-  explicit ByteReader(std::span<const std::byte> bytes) : rest_(bytes) {}
+  // `whose`: whose bytes they are, for the message where they end early; "HEAD's directory ".
+  explicit ByteReader(std::span<const std::byte> bytes, const char* whose = "")
+      : rest_(bytes), whose_(whose) {}
 
   template <std::unsigned_integral T>
   [[nodiscard]] T get() {
@@ -53,7 +55,9 @@ class ByteReader {
     return static_cast<T>(value);
   }
   [[nodiscard]] std::span<const std::byte> get_bytes(std::size_t count) {
-    if (count > rest_.size()) throw Error(ErrorCode::bad_input, "ends early");
+    if (count > rest_.size()) {
+      throw Error(ErrorCode::bad_input, std::string(whose_) + "ends early");
+    }
     const std::span<const std::byte> front = rest_.first(count);
     rest_ = rest_.subspan(count);
     return front;
@@ -63,6 +67,7 @@ class ByteReader {
 
  private:
   std::span<const std::byte> rest_;
+  const char* whose_;
 };
 
 }  // namespace psf::formats

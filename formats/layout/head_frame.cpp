@@ -109,7 +109,7 @@ std::vector<std::byte> encode_head(const Head& head) {
 }
 
 Head decode_head(std::span<const std::byte> directory) {
-  ByteReader in(directory);
+  ByteReader in(directory, "HEAD's directory ");
   Head head;
   head.channels.clear();
   head.major = in.get<std::uint16_t>();

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "core/error.h"
 #include "formats/layout/layout.h"
@@ -43,31 +44,44 @@ Json metadata_of(const Reader& reader) {
   }
 }
 
-std::string table_names(const Head& head) {
-  std::vector<std::string> texts;
-  for (const Table& table : head.tables) texts.push_back(to_text(table));
-  return texts.empty() ? "none" : fmt::format("{}", fmt::join(texts, ", "));
+// The first channel in which two lists differ, "as number 2 flags u8 x 1, not none"; empty: they do
+// not.
+std::string difference(const std::vector<Channel>& own, const std::vector<Channel>& other) {
+  const auto [a, b] = std::mismatch(own.begin(), own.end(), other.begin(), other.end());
+  if (a == own.end() && b == other.end()) return "";
+  return fmt::format("as number {} {}, not {}", a - own.begin(),
+                     a == own.end() ? "none" : to_text(*a),
+                     b == other.end() ? "none" : to_text(*b));
+}
+
+// The first difference of two files in their tables; empty: there is none. How many records a chunk
+// may have is none.
+std::string difference(const std::vector<Table>& own, const std::vector<Table>& other) {
+  for (std::size_t k = 0; k < own.size() || k < other.size(); ++k) {
+    if (k >= own.size()) return fmt::format("it has no table {}", other[k].name);
+    if (k >= other.size())
+      return fmt::format("it has a table {}, which the other has not", own[k].name);
+    if (own[k].name != other[k].name) {
+      return fmt::format("it has a table {}, not {}", own[k].name, other[k].name);
+    }
+    const std::string channels = difference(own[k].channels, other[k].channels);
+    if (channels.empty()) continue;
+    return fmt::format("its table {} has other channels: {}", own[k].name, channels);
+  }
+  return "";
 }
 
 void check_joined(const Reader& reader, const Reader& first) {
   const Head &own = reader.head(), &other = first.head();
-  if (own.channels != other.channels) {
-    std::size_t k = 0;
-    while (k < own.channels.size() && k < other.channels.size() &&
-           own.channels[k] == other.channels[k]) {
-      ++k;
-    }
+  if (const std::string channels = difference(own.channels, other.channels); !channels.empty()) {
     refuse_to_join(
         reader, first,
-        fmt::format("it has other channels: as number {} {}, not {}; 'psf cat --channels' and "
-                    "'--quantize' make them the same",
-                    k, k < own.channels.size() ? to_text(own.channels[k]) : "none",
-                    k < other.channels.size() ? to_text(other.channels[k]) : "none"));
+        fmt::format("it has other channels: {}; 'psf cat --channels' and '--quantize' make "
+                    "them the same",
+                    channels));
   }
-  if (own.tables != other.tables) {
-    refuse_to_join(reader, first,
-                   fmt::format("it has other tables: {}, not {}; 'psf cat --drop' leaves them out",
-                               table_names(own), table_names(other)));
+  if (const std::string tables = difference(own.tables, other.tables); !tables.empty()) {
+    refuse_to_join(reader, first, fmt::format("{}; 'psf cat --drop' leaves tables out", tables));
   }
   if (own.minor != other.minor || own.optional_features != other.optional_features ||
       own.later_fields != other.later_fields || own.later_bytes != other.later_bytes) {
@@ -145,8 +159,14 @@ void check_names(const Reader& reader, std::span<const std::string> names, bool 
     }
     std::vector<std::string> known;
     for (const Channel& channel : reader.head().channels) known.push_back(channel.name);
-    throw Error(ErrorCode::bad_input, fmt::format("{}: has no channel {}; it has {}", reader.path(),
-                                                  name, fmt::join(known, ", ")));
+    const bool with_tables = tables && !reader.head().tables.empty();
+    std::string more;
+    for (const Table& table : reader.head().tables) more += ", " + table.name;
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format("{}: has no channel {}{}; it has {}{}{}", reader.path(),
+                    with_tables ? "or table " : "", name, fmt::join(known, ", "),
+                    with_tables ? ", and the tables " : "", with_tables ? more.substr(2) : ""));
   }
 }
 
@@ -169,10 +189,10 @@ JoinedTable joined_paths(const Reader& first, const ConcatenateOptions& options)
   return paths;
 }
 
-void add_tables(const Reader& first, const ConcatenateOptions& options, JoinedHead& joined) {
-  joined.head.tables.clear();
-  for (std::size_t k = 1; k < first.head().table_count(); ++k) {
-    const Table& table = first.head().tables[k - 1];
+void add_tables(const ConcatenateOptions& options, JoinedHead& joined) {
+  const std::vector<Table> all = std::exchange(joined.head.tables, {});
+  for (std::size_t k = 1; k <= all.size(); ++k) {
+    const Table& table = all[k - 1];
     if (has(options.drop, table.name)) continue;
     JoinedTable copied{k, {}};
     for (std::size_t c = 0; c < table.channels.size(); ++c) {
@@ -182,7 +202,7 @@ void add_tables(const Reader& first, const ConcatenateOptions& options, JoinedHe
     joined.head.tables.push_back(table);
   }
   // Without them it is a file of version 1.0, unless a later one wrote it.
-  const bool dropped = joined.head.tables.size() < first.head().tables.size();
+  const bool dropped = joined.head.tables.size() < all.size();
   if (dropped && joined.head.tables.empty() && joined.head.minor == kMinor) joined.head.minor = 0;
 }
 
@@ -194,8 +214,12 @@ JoinedHead join_heads(std::span<const JoinedInput> inputs, const ConcatenateOpti
   joined.head = first.head();
   for (const JoinedInput& input : inputs.subspan(1)) {
     check_joined(input.reader, first);
-    joined.head.chunk_capacity =
-        std::max(joined.head.chunk_capacity, input.reader.head().chunk_capacity);
+    const Head& other = input.reader.head();
+    joined.head.chunk_capacity = std::max(joined.head.chunk_capacity, other.chunk_capacity);
+    for (std::size_t k = 0; k < joined.head.tables.size(); ++k) {
+      std::uint32_t& capacity = joined.head.tables[k].chunk_capacity;
+      capacity = std::max(capacity, other.tables[k].chunk_capacity);
+    }
   }
   check_names(first, options.channels);
   check_names(first, options.drop, true);
@@ -210,7 +234,7 @@ JoinedHead join_heads(std::span<const JoinedInput> inputs, const ConcatenateOpti
   for (const JoinedChannel& channel : joined.tables[0].channels) {
     joined.head.channels.push_back(channel.channel);
   }
-  add_tables(first, options, joined);
+  add_tables(options, joined);
   joined.head.metadata = joined_metadata(inputs);
   joined.notes = notes_on(inputs);
   return joined;

@@ -221,6 +221,14 @@ TEST_CASE("A set of light paths does not depend on threads, and each path is its
   CHECK(sets[0].size() > 2000);
   CHECK(sets[1] == sets[0]);
   CHECK(sets[2] == sets[0]);
+  std::vector<Seen> in_parts;
+  for (const auto& [first, count] : {std::pair(0u, 300u), {300u, 1u}, {301u, 699u}}) {
+    std::uint64_t rays = 0;
+    const auto part =
+        paths.collect_some<Seen>(light_numbers(5), 3, 1000, {first, count}, rays, see);
+    in_parts.insert(in_parts.end(), part.begin(), part.end());
+  }
+  CHECK(in_parts == sets[0]);
   std::vector<Seen> alone;
   Sampler sampler = LightPaths::sampler(light_numbers(5), 3, 1000, 700);
   std::uint64_t rays = 0;

@@ -213,14 +213,23 @@ TEST_CASE("Photons that come straight carry the power of the lamp, in the unit o
   // A lamp of area 0.64 and radiance 6 sends 6 pi 0.64 into a closed room.
   const psf::tests::TempFolder folder;
   const std::string path = folder / "p.pvb";
-  write(path, room(), told(0, 2000));
+  constexpr std::uint32_t kPaths = 70000;  // more than are traced at once
+  write(path, room(), told(0, kPaths));
   const formats::Reader reader(path);
   const formats::TableReader& photons = reader.table(1);
   CHECK(photons.name() == "photons");
   const auto power = column<Rgb>(photons, "power");
   const auto depth = column<std::uint16_t>(photons, "depth");
   const auto light = column<std::uint32_t>(photons, "light");
+  const auto number = column<std::uint32_t>(photons, "path");
   const auto normal = column<Vec3>(photons, "normal"), toward = column<Vec3>(photons, "direction");
+  for (const formats::Pass& pass : photons.passes()) {
+    const auto first = number.begin() + static_cast<std::ptrdiff_t>(pass.first);
+    const auto last = first + static_cast<std::ptrdiff_t>(pass.count);
+    CHECK(std::is_sorted(first, last));
+    CHECK(*first == 0);
+    CHECK(*(last - 1) == kPaths - 1);
+  }
   double straight = 0;
   for (std::size_t k = 0; k < power.size(); ++k) {
     if (light[k] != 0) FAIL("of no light");
@@ -249,4 +258,23 @@ TEST_CASE("Integrators whose paths are no chains of vertices, or know no light, 
   CHECK(said(split).find("without `split`") != std::string::npos);
   CHECK(said(told(0, 10, "ao")).find("`photons`") != std::string::npos);
   CHECK(said(told(0, 10, "vpl")).empty());
+}
+
+TEST_CASE("More light paths than their numbers hold are refused, those of the table too") {
+  const Scene scene = room();
+  RenderSettings settings = told(0, 1u << 27);
+  settings.passes = 1u << 13;
+  for (const char* name : {"path", "photon", "vpl"}) {
+    settings.integrator.name = name;
+    try {
+      settings.validate(scene);
+      FAIL("no error for " << name);
+    } catch (const Error& error) {
+      CHECK(error.code() == ErrorCode::limit);
+      CHECK(std::string(error.what()).find("lower the passes or the light paths") !=
+            std::string::npos);
+    }
+  }
+  --settings.passes;
+  settings.validate(scene);
 }

@@ -45,18 +45,30 @@ class LightPaths {
   [[nodiscard]] static Sampler sampler(const SamplerSettings& settings, std::uint64_t pass,
                                        std::uint64_t paths, std::uint64_t path);
 
+  // Some of the paths of a set.
+  struct Some {
+    std::uint64_t first, count;
+  };
+
   // Traces the set of a pass on all threads. keep(vertex, kept) appends to `kept` what is wanted of
   // a vertex, a std::vector<T>; they come in the order of the paths.
   template <class T, class Keep>
   [[nodiscard]] std::vector<T> collect(const SamplerSettings& settings, std::uint64_t pass,
                                        std::uint64_t paths, std::uint64_t& rays,
                                        const Keep& keep) const {
+    return collect_some<T>(settings, pass, paths, {0, paths}, rays, keep);
+  }
+  // The same of a part of the set.
+  template <class T, class Keep>
+  [[nodiscard]] std::vector<T> collect_some(const SamplerSettings& settings, std::uint64_t pass,
+                                            std::uint64_t paths, const Some& some,
+                                            std::uint64_t& rays, const Keep& keep) const {
     constexpr std::size_t kPathsATask = 256;
-    std::vector<std::vector<T>> parts(core::range_count(paths, kPathsATask));
+    std::vector<std::vector<T>> parts(core::range_count(some.count, kPathsATask));
     std::vector<std::uint64_t> shot(parts.size());
-    core::parallel_for(paths, kPathsATask, [&](std::size_t begin, std::size_t end) {
+    core::parallel_for(some.count, kPathsATask, [&](std::size_t begin, std::size_t end) {
       const std::size_t part = begin / kPathsATask;
-      for (std::size_t k = begin; k < end; ++k) {
+      for (std::size_t k = some.first + begin; k < some.first + end; ++k) {
         Sampler numbers = sampler(settings, pass, paths, k);
         trace(k, numbers, shot[part], [&](const LightVertex& v) { keep(v, parts[part]); });
       }

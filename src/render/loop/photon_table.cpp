@@ -1,9 +1,5 @@
 #include "render/loop/photon_table.h"
 
-#include <cmath>
-
-#include "render/light/light_paths.h"
-
 namespace psf::render {
 
 const std::vector<TableColumn<PhotonRow>>& photon_columns() {
@@ -23,7 +19,8 @@ const std::vector<TableColumn<PhotonRow>>& photon_columns() {
 
 std::vector<PhotonRow> trace_photon_rows(const Transport& transport, const Space& space,
                                          const SamplerSettings& sampler, std::uint64_t pass,
-                                         std::uint64_t paths, std::uint64_t& rays) {
+                                         std::uint64_t paths, const LightPaths::Some& some,
+                                         std::uint64_t& rays) {
   // Power is radiance times area, and areas are those of the scene's space.
   const float unit = space.world_length(1);
   const float scale = unit * unit / static_cast<float>(paths);
@@ -34,7 +31,7 @@ std::vector<PhotonRow> trace_photon_rows(const Transport& transport, const Space
                     v.at.out, v.power * scale, static_cast<std::uint16_t>(v.depth - 1),
                     static_cast<std::uint32_t>(v.light), static_cast<std::uint32_t>(at.material)});
   };
-  return LightPaths(transport).collect<PhotonRow>(sampler, pass, paths, rays, keep);
+  return LightPaths(transport).collect_some<PhotonRow>(sampler, pass, paths, some, rays, keep);
 }
 
 }  // namespace psf::render

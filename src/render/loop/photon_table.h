@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "render/light/transport.h"
+#include "render/light/light_paths.h"
 #include "render/loop/table_columns.h"
 #include "render/sample/sampler.h"
 #include "render/scene/space.h"
@@ -21,12 +21,10 @@ struct PhotonRow {
 
 [[nodiscard]] const std::vector<TableColumn<PhotonRow>>& photon_columns();
 
-// The vertices of so many light paths, those of a pass, in world units. Adds the number of rays to
-// `rays`.
-[[nodiscard]] std::vector<PhotonRow> trace_photon_rows(const Transport& transport,
-                                                       const Space& space,
-                                                       const SamplerSettings& sampler,
-                                                       std::uint64_t pass, std::uint64_t paths,
-                                                       std::uint64_t& rays);
+// The vertices of some of the `paths` light paths of a pass, in world units. Adds the number of rays
+// to `rays`.
+[[nodiscard]] std::vector<PhotonRow> trace_photon_rows(
+    const Transport& transport, const Space& space, const SamplerSettings& sampler,
+    std::uint64_t pass, std::uint64_t paths, const LightPaths::Some& some, std::uint64_t& rays);
 
 }  // namespace psf::render

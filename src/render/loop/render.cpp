@@ -27,7 +27,8 @@ namespace {
 
 constexpr std::size_t kSlab = std::size_t{1} << 18;        // records traced before they are written
 constexpr std::size_t kVertexSlab = std::size_t{1} << 16;  // the same with the vertices of paths
-constexpr std::size_t kGrain = 1024;                       // paths a task
+constexpr std::uint64_t kPhotonSlab = std::uint64_t{1} << 16;  // light paths at once
+constexpr std::size_t kGrain = 1024;                           // paths a task
 
 using core::Clock;
 using core::seconds_since;
@@ -270,16 +271,19 @@ void Loop::trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path
                slab.vertices[slot / kGrain]);
 }
 
-// The photons of a pass come before its paths, which may need most of the memory.
+// The photons of a pass, which may be more than fit into memory at once.
 void Loop::write_photons(std::uint64_t pass) {
-  std::uint64_t rays = 0;
-  const std::vector<PhotonRow> rows =
-      trace_photon_rows(*integrator_.light_transport(), space_, settings_.sampler, pass,
-                        settings_.integrator.photons, rays);
-  rays_ += rays;
-  wait_for_output();
+  const std::uint64_t paths = settings_.integrator.photons;
   const std::size_t table = settings_.integrator.vertices > 0 ? 2 : 1;
-  append_rows<PhotonRow>(*writer_, table, rows, photon_columns());
+  for (std::uint64_t first = 0; first < paths; first += kPhotonSlab) {
+    std::uint64_t rays = 0;
+    const std::vector<PhotonRow> rows =
+        trace_photon_rows(*integrator_.light_transport(), space_, settings_.sampler, pass, paths,
+                          {first, std::min(kPhotonSlab, paths - first)}, rays);
+    rays_ += rays;
+    wait_for_output();
+    append_rows<PhotonRow>(*writer_, table, rows, photon_columns());
+  }
 }
 
 void Loop::write_vertices(Slab& slab) {

@@ -29,11 +29,12 @@ void RenderSettings::validate(const Scene& scene) const {
     pixels += static_cast<double>(scene.cameras[k].width) * scene.cameras[k].height;
   }
   const double paths = pixels * static_cast<double>(passes);
-  const bool photons = integrator.name == "photon", vpls = integrator.name == "vpl";
-  const bool of_pixels = vpls && integrator.vpl_set == VplSet::pixel;
-  const double light_paths = static_cast<double>(passes) * (photons ? integrator.photon_paths
-                                                            : vpls  ? integrator.vpl_paths
-                                                                    : 0u);
+  const bool vpls = integrator.name == "vpl",
+             of_pixels = vpls && integrator.vpl_set == VplSet::pixel;
+  std::uint32_t of_a_pass = integrator.photons;  // those of the table
+  if (integrator.name == "photon") of_a_pass = std::max(of_a_pass, integrator.photon_paths);
+  if (vpls) of_a_pass = std::max(of_a_pass, integrator.vpl_paths);
+  const double light_paths = static_cast<double>(passes) * of_a_pass;
   if (light_paths >= 0x1p40 ||
       (of_pixels && paths * integrator.split * integrator.vpl_paths >= 0x1p48)) {
     throw Error(ErrorCode::limit,
