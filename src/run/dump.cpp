@@ -108,6 +108,10 @@ std::uint64_t Dump::vertex_memory() const {
   return rule_ ? VertexCut(*reader_, *rule_, metadata_.shade_rate).memory() : 0;
 }
 
+bool Dump::makes_kind() const {
+  return rule_ && VertexCut(*reader_, *rule_, metadata_.shade_rate).makes_kind();
+}
+
 bool Dump::refresh() {
   if (!reader_->refresh()) return false;
   set_pass_bounds();
@@ -183,6 +187,7 @@ ChannelSet Dump::select(const filter::Parameters& parameters, bool guides) const
   if (filter::needs_angle(parameters)) require_angles();
   set.flags = find("flags");
   set.unfiltered = find("unfiltered");
+  set.kind = find("kind");
   set.camera = cameras_.size() > 1 ? std::optional(require("camera", "a dump of several cameras"))
                                    : find("camera");
   for (const filter::ChannelNeed& need : filter::optional_channels(parameters)) {
@@ -234,7 +239,9 @@ void Dump::read(const filter::PathRange& range, const ChannelSet& channels,
     out.layer_views.push_back({layer.contribution, layer.unfiltered});
   }
   if (!channels.flags) out.flags.assign(count, filter::kHasVertex | filter::kShaded);
-  if (rule_) VertexCut(*reader_, *rule_, metadata_.shade_rate).apply(range, out);
+  // Where x_i is not read, nothing of it is asked for.
+  if (rule_ && channels.position)
+    VertexCut(*reader_, *rule_, metadata_.shade_rate).apply(range, out);
   if (channels.photons) read_photons(*reader_, *channels.photons, range, out.photons);
   check_pixels(range, out);
 }

@@ -32,6 +32,9 @@ class VertexCut {
   // bounds the memory. Throws Error{bad_input} where a path has no chain of vertices, where chains are
   // not in the order of the paths, and where a record has a vertex but its path has none.
   void apply(const filter::PathRange& range, BlockRecords& out) const;
+  // Whether the vertices have a kind and the paths have none, so that apply() makes that channel. The
+  // renderer's own choice stays as the paths have it.
+  [[nodiscard]] bool makes_kind() const;
   // The most bytes that apply() takes beside the records, and that its reader keeps.
   [[nodiscard]] std::uint64_t memory() const;
 
