@@ -14,8 +14,6 @@
 namespace psf::formats {
 namespace {
 
-constexpr std::size_t kCacheBytes = std::size_t{32} << 20;
-
 // The passes of a table of a file with so many passes.
 std::vector<Pass> passes_of(std::span<const ChunkEntry> chunks, std::uint64_t count) {
   std::vector<Pass> passes(static_cast<std::size_t>(count));

@@ -21,6 +21,9 @@ namespace psf::formats {
 // A Reader owns one for the paths and one for each table. All methods are thread-safe.
 class TableReader {
  public:
+  // The most bytes of decoded columns that it keeps, beside the last one.
+  static constexpr std::size_t kCacheBytes = std::size_t{32} << 20;
+
   // `table` as Head::schema() counts; file and index stay where they are.
   TableReader(const File& file, const Opened& opened, std::size_t table);
   TableReader(const TableReader&) = delete;

@@ -28,9 +28,7 @@ std::string name_of(const run::Dump& dump, std::size_t camera) {
 // All that a term can look at, where the file has it, beside what the parameters need.
 run::ChannelSet select_all(const run::Dump& dump, const filter::Parameters& parameters) {
   static_cast<void>(dump.select(parameters, true));  // names what this run misses
-  const auto has = [&dump](std::string_view channel) {
-    return dump.reader().head().find(channel).has_value();
-  };
+  const auto has = [&dump](std::string_view channel) { return dump.has(channel); };
   filter::Parameters all = parameters;
   // With a term the channels that it needs are read, whatever its threshold.
   for (std::size_t k = 0; k < filter::kTermCount; ++k) {

@@ -34,6 +34,7 @@ class JsonWriter {
     const ExplainRequest& request = e_.request;
     const Attribution& w = report_.whence;
     Json json = {{"input", report_.dump.reader().path()}, {"uuid", report_.dump.reader().uuid()}};
+    if (const auto& rule = report_.dump.vertex_rule()) json["vertex"] = to_text(*rule);
     for (const auto& [name, value] : filter::describe(request.parameters)) {
       json["parameters"][name] = value;
     }

@@ -50,6 +50,7 @@ class Overview {
     text_ = fmt::format("{}: {}pixel {},{}{}\n", report_.dump.reader().path(),
                         e_.request.path ? fmt::format("path {}, ", *e_.request.path) : "", x, y,
                         camera.empty() ? "" : fmt::format(" of camera \"{}\"", shown(camera)));
+    if (const auto& rule = report_.dump.vertex_rule()) line("vertex", to_text(*rule));
     paths();
     for (const ExplainedPath& path : e_.paths) {
       if (has_vertex(path)) own_.push_back(&path);

@@ -56,7 +56,7 @@ AblationRow to_row(const study::AblationRow& row, std::span<const metrics::Metri
 
 AblationResult Dump::ablate(const Parameters& parameters, const AblateOptions& options) const {
   const std::shared_lock reading(state_->mutex);
-  const run::Dump& dump = state_->dump;
+  const run::Dump dump = state_->at(options.vertex);
   check_camera(dump, options.camera);
   const metrics::Metric metric = metrics::parse_metric(options.metric);
   AblationResult result;

@@ -58,19 +58,19 @@ void Dump::read_floats(std::string_view channel, std::uint64_t first, std::uint6
 
 FilterResult Dump::filter(const Parameters& parameters, const FilterOptions& options) const {
   const std::shared_lock reading(state_->mutex);
+  const run::Dump dump = state_->at(options.vertex);
   run::FilterRequest request;
   request.parameters = to_filter(parameters);
   FilterResult result;
-  const std::string note = run::switch_off_missing(state_->dump, {&request.parameters, 1},
+  const std::string note = run::switch_off_missing(dump, {&request.parameters, 1},
                                                    filter::asked_terms(parameters.given()));
   if (!note.empty()) result.notes.push_back(note);
   request.passes = to_run(options.passes);
   if (!options.layers) request.layers = run::PictureLayers::none();
   request.max_memory = options.max_memory;
   request.on_progress = options.on_progress;
-  const run::FilterResult done = run::filter_dump(state_->dump, request);
-  const film::Attributes attributes =
-      run::attributes_of(PSF_VERSION, state_->dump, request.parameters);
+  const run::FilterResult done = run::filter_dump(dump, request);
+  const film::Attributes attributes = run::attributes_of(PSF_VERSION, dump, request.parameters);
   for (std::size_t k = 0; k < done.pictures.size(); ++k) {
     film::Image image = done.pictures[k].image();
     image.attributes.insert(image.attributes.begin(), attributes.begin(), attributes.end());

@@ -35,6 +35,9 @@ struct FilterOptions {
   Passes passes;                            // the passes that are filtered
   bool layers = true;                       // all layers of psf filter, not the colours alone
   std::optional<std::uint64_t> max_memory;  // bytes; where they do not suffice: Error{limit}
+  // As --vertex of the commands: "first-rough", "depth:K", "roughness:T", "distance:D"; empty: the
+  // vertex of the file.
+  std::string vertex = {};
   // Called now and then by the thread that filters, with numbers of paths.
   std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};
 };

@@ -26,6 +26,12 @@ struct Dump::State {
     return dump.reader().require(name, "the caller");
   }
 
+  // The dump with a vertex as options have it. Throws Error{usage} for a text that is no rule, and
+  // what run::Dump::at() throws.
+  [[nodiscard]] run::Dump at(const std::string& vertex) const {
+    return dump.at(run::vertex_rule_of(vertex));
+  }
+
   run::Dump dump;
   mutable std::shared_mutex mutex;  // refresh() changes what the others read
   std::vector<Channel> channels;

@@ -15,13 +15,14 @@
 namespace psf {
 
 struct Explanation::State {
-  std::shared_ptr<const Dump::State> of;
+  std::shared_ptr<const Dump::State> of;  // its lock
+  run::Dump dump;                         // with the vertex that was chosen
   explain::ExplainResult explanation;
   explain::Attribution whence;
   std::vector<std::string> notes;
 
   [[nodiscard]] explain::Report report(std::size_t rows, bool vertices) const {
-    return {of->dump, explanation, whence, rows, vertices};
+    return {dump, explanation, whence, rows, vertices};
   }
   [[nodiscard]] std::string text(std::size_t rows, bool vertices) const {
     const std::shared_lock reading(of->mutex);
@@ -33,16 +34,17 @@ struct Explanation::State {
                                            const Parameters& parameters,
                                            const ExplainOptions& options) {
     request.parameters = to_filter(parameters);
-    const std::string note = run::switch_off_missing(of->dump, {&request.parameters, 1},
+    const run::Dump dump = of->at(options.vertex);
+    const std::string note = run::switch_off_missing(dump, {&request.parameters, 1},
                                                      filter::asked_terms(parameters.given()));
     request.passes = to_run(options.passes);
     request.on_progress = options.on_progress;
-    explain::ExplainResult explanation = explain::explain(of->dump, request);
+    explain::ExplainResult explanation = explain::explain(dump, request);
     explain::Attribution whence = explain::attribute(explanation);
     std::vector<std::string> notes;
     if (!note.empty()) notes.push_back(note);
     return std::make_shared<const State>(
-        State{of, std::move(explanation), std::move(whence), std::move(notes)});
+        State{of, dump, std::move(explanation), std::move(whence), std::move(notes)});
   }
 };
 
@@ -82,7 +84,7 @@ const std::vector<std::string>& Explanation::notes() const {
 }
 
 void Explanation::save(const std::string& path) const {
-  core::check_files({state_->of->dump.reader().path()}, {path});
+  core::check_files({state_->dump.reader().path()}, {path});
   const std::string extension = std::filesystem::path(path).extension().string();
   if (extension == ".json") return core::write_text_file(path, json());
   if (extension != ".ply") {

@@ -19,6 +19,9 @@ namespace psf {
 struct ExplainOptions {
   Passes passes;           // the passes whose paths are explained
   std::size_t camera = 0;  // the pixel's; a path has its own
+  // As --vertex of the commands: "first-rough", "depth:K", "roughness:T", "distance:D"; empty: the
+  // vertex of the file.
+  std::string vertex = {};
   // Called now and then by the thread that explains, with numbers of paths.
   std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};
 };

@@ -63,14 +63,15 @@ SweepResult Dump::sweep(const Picture& reference, std::span<const Parameters> se
                         std::span<const std::string> metrics, const FilterOptions& options,
                         std::size_t camera) const {
   const std::shared_lock reading(state_->mutex);
-  check_reference(reference, state_->dump, camera);
+  const run::Dump dump = state_->at(options.vertex);
+  check_reference(reference, dump, camera);
   std::vector<metrics::Metric> measured;
   for (const std::string& metric : metrics) measured.push_back(metrics::parse_metric(metric));
   if (measured.empty()) measured = {metrics::Metric::rel_mse};
   const metrics::Reference prepared(colors_of(reference), reference.width, {}, measured);
 
   SweepResult result;
-  const std::vector<filter::Parameters> rows = fitted(state_->dump, sets, result.notes);
+  const std::vector<filter::Parameters> rows = fitted(dump, sets, result.notes);
   result.rows.resize(rows.size());
   study::SweepRequest request;
   request.rows = rows;
@@ -87,16 +88,17 @@ SweepResult Dump::sweep(const Picture& reference, std::span<const Parameters> se
     out.neighbors = row.neighbors;
     out.seconds = row.seconds;
   };
-  study::run_sweep(state_->dump, prepared, request);
+  study::run_sweep(dump, prepared, request);
   return result;
 }
 
 TuneResult Dump::tune(std::span<const Parameters> sets, const TuneOptions& options) const {
   const std::shared_lock reading(state_->mutex);
-  check_camera(state_->dump, options.camera);
+  const run::Dump dump = state_->at(options.vertex);
+  check_camera(dump, options.camera);
   if (sets.empty()) throw Error(ErrorCode::usage, "`sets`: at least one is needed");
   TuneResult result;
-  const std::vector<filter::Parameters> rows = fitted(state_->dump, sets, result.notes);
+  const std::vector<filter::Parameters> rows = fitted(dump, sets, result.notes);
   study::TuneRequest request;
   request.sets = rows;
   request.passes = to_run(options.passes);
@@ -104,7 +106,7 @@ TuneResult Dump::tune(std::span<const Parameters> sets, const TuneOptions& optio
   request.epsilon = options.epsilon;
   request.max_memory = options.max_memory;
   request.on_progress = options.on_progress;
-  const study::TuneResult tuning = study::tune(state_->dump, request);
+  const study::TuneResult tuning = study::tune(dump, request);
   for (const study::TuneRow* row : study::by_error(tuning)) result.rows.push_back(to_row(*row));
   for (const auto& [name, text] : filter::describe(tuning.rows[tuning.best].parameters)) {
     // How to find the neighbours is the user's to say.
@@ -112,8 +114,8 @@ TuneResult Dump::tune(std::span<const Parameters> sets, const TuneOptions& optio
   }
   result.sure = study::may_be_better(tuning) == 0;
   result.unfiltered = tuning.unfiltered;
-  result.json = file_text(study::to_json(tuning, state_->dump, request, PSF_VERSION));
-  result.inputs = {absolute(state_->dump.reader().path())};
+  result.json = file_text(study::to_json(tuning, dump, request, PSF_VERSION));
+  result.inputs = {absolute(dump.reader().path())};
   return result;
 }
 
@@ -126,7 +128,8 @@ ConvergeResult converge(std::span<const std::string> dumps, const Picture& refer
                         std::span<const Parameters> sets, const ConvergeOptions& options) {
   if (dumps.empty()) throw Error(ErrorCode::usage, "`dumps`: at least one is needed");
   if (sets.empty()) throw Error(ErrorCode::usage, "`sets`: at least one is needed");
-  const run::Dump first(dumps.front());
+  const std::optional<run::VertexRule> vertex = run::vertex_rule_of(options.vertex);
+  const run::Dump first(dumps.front(), vertex);
   check_reference(reference, first, options.camera);
   const run::PassSelection passes = to_run({0, options.passes});
   const std::span<const metrics::Metric> measured =
@@ -150,7 +153,7 @@ ConvergeResult converge(std::span<const std::string> dumps, const Picture& refer
   study::check_replicates(dumps, run::last_pass(first, passes));
   std::vector<filter::Parameters> rows = to_filter(sets);
   for (const std::string& path : dumps) {
-    const run::Dump replicate(path);
+    const run::Dump replicate(path, vertex);
     fit(replicate, sets, rows, result.notes);  // what any of them lacks is off for all
     report.inputs.push_back(study::describe_input(replicate, passes, options.camera));
   }
@@ -158,6 +161,7 @@ ConvergeResult converge(std::span<const std::string> dumps, const Picture& refer
   request.sets = rows;
   request.n = study::powers_up_to(run::last_pass(first, passes));
   request.camera = options.camera;
+  request.vertex = vertex;
   request.with_times = options.times;
   request.max_memory = options.max_memory;
   request.on_progress = options.on_progress;

@@ -47,6 +47,9 @@ struct TuneOptions {
   std::size_t camera = 0;                   // the picture's
   double epsilon = 1e-2;                    // of the relative error: guards dark places
   std::optional<std::uint64_t> max_memory;  // bytes; where they do not suffice: Error{limit}
+  // As --vertex of the commands: "first-rough", "depth:K", "roughness:T", "distance:D"; empty: the
+  // vertex of the file.
+  std::string vertex = {};
   // Called now and then by the thread that tunes, with numbers of paths.
   std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};
 };
@@ -89,6 +92,9 @@ struct AblateOptions {
   std::array<std::size_t, 4> crop = {};     // x, y, width, height on the sheet; all 0: everything
   std::size_t columns = 5;                  // pictures beside each other on the sheet
   std::optional<std::uint64_t> max_memory;  // bytes; where they do not suffice: Error{limit}
+  // As --vertex of the commands: "first-rough", "depth:K", "roughness:T", "distance:D"; empty: the
+  // vertex of the file.
+  std::string vertex = {};
   // Called now and then by the thread that works, with numbers of paths.
   std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};
 };
@@ -130,6 +136,9 @@ struct ConvergeOptions {
   bool times = true;                        // run each set once more to take its time
   std::vector<std::string> render_json;     // texts that psf-render --json wrote, for speed-ups
   std::optional<std::uint64_t> max_memory;  // bytes; where they do not suffice: Error{limit}
+  // As --vertex of the commands: "first-rough", "depth:K", "roughness:T", "distance:D"; empty: the
+  // vertex of the file.
+  std::string vertex = {};
   // Called now and then by the thread that works, with numbers of paths.
   std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};
 };

@@ -150,18 +150,19 @@ PYBIND11_MODULE(_psf, m) {
       .def_property_readonly("cameras", &Dump::cameras)
       .def("refresh", &Dump::refresh)
       .def("read", read_channel)
-      .def("filter",
-           [](const Dump& dump, const Texts& given, bool no_weights, const PassRange& passes,
-              std::optional<std::uint64_t> max_memory, const py::object& progress) {
-             const Parameters parameters = parameters_of(given, no_weights);
-             return work_on(progress, [&](const auto& on_progress) {
-               FilterOptions options;
-               options.passes = to_passes(passes);
-               options.max_memory = max_memory;
-               options.on_progress = on_progress;
-               return dump.filter(parameters, options);
-             });
-           });
+      .def("filter", [](const Dump& dump, const Texts& given, bool no_weights,
+                        const PassRange& passes, std::optional<std::uint64_t> max_memory,
+                        const std::string& vertex, const py::object& progress) {
+        const Parameters parameters = parameters_of(given, no_weights);
+        return work_on(progress, [&](const auto& on_progress) {
+          FilterOptions options;
+          options.passes = to_passes(passes);
+          options.max_memory = max_memory;
+          options.vertex = vertex;
+          options.on_progress = on_progress;
+          return dump.filter(parameters, options);
+        });
+      });
 
   bind_studies(m, dump);
   bind_records(m);

@@ -67,13 +67,14 @@ py::list to_list(const std::vector<Row>& rows) {
 // Rows, notes.
 auto sweep(const Dump& dump, const Picture& reference, const Texts& lists, bool no_weights,
            const std::vector<std::string>& metrics, const PassRange& passes,
-           std::optional<std::uint64_t> max_memory, std::size_t camera,
+           std::optional<std::uint64_t> max_memory, std::size_t camera, const std::string& vertex,
            const py::object& progress) {
   const std::vector<Parameters> sets = Parameters::combinations(lists, no_weights);
   const SweepResult result = work_on(progress, [&](const auto& on_progress) {
     FilterOptions options;
     options.passes = to_passes(passes);
     options.max_memory = max_memory;
+    options.vertex = vertex;
     options.on_progress = on_progress;
     return dump.sweep(reference, sets, metrics, options, camera);
   });
@@ -82,11 +83,11 @@ auto sweep(const Dump& dump, const Picture& reference, const Texts& lists, bool 
 
 TuneResult tune(const Dump& dump, Texts lists, bool no_weights, const PassRange& passes,
                 std::size_t camera, double epsilon, std::optional<std::uint64_t> max_memory,
-                const py::object& progress) {
+                const std::string& vertex, const py::object& progress) {
   lists.try_emplace("r0", tune_radii());
   const std::vector<Parameters> sets = Parameters::combinations(lists, no_weights);
   return work_on(progress, [&](const auto& on_progress) {
-    return dump.tune(sets, {to_passes(passes), camera, epsilon, max_memory, on_progress});
+    return dump.tune(sets, {to_passes(passes), camera, epsilon, max_memory, vertex, on_progress});
   });
 }
 
@@ -94,12 +95,13 @@ ConvergeResult converge(const std::vector<std::string>& dumps, const Picture& re
                         const Texts& lists, bool no_weights, std::optional<std::uint64_t> passes,
                         std::size_t camera, double epsilon, bool all_metrics, bool times,
                         const std::vector<std::string>& render_json,
-                        std::optional<std::uint64_t> max_memory, const py::object& progress) {
+                        std::optional<std::uint64_t> max_memory, const std::string& vertex,
+                        const py::object& progress) {
   const std::vector<Parameters> sets = Parameters::combinations(lists, no_weights);
   return work_on(progress, [&](const auto& on_progress) {
-    return psf::converge(
-        dumps, reference, sets,
-        {passes, camera, epsilon, all_metrics, times, render_json, max_memory, on_progress});
+    return psf::converge(dumps, reference, sets,
+                         {passes, camera, epsilon, all_metrics, times, render_json, max_memory,
+                          vertex, on_progress});
   });
 }
 
@@ -108,21 +110,21 @@ AblationResult ablate(const Dump& dump, const Texts& given, bool no_weights,
                       const std::optional<Picture>& reference, const std::string& metric,
                       double epsilon, float exposure, const std::array<std::size_t, 4>& crop,
                       std::size_t columns, std::optional<std::uint64_t> max_memory,
-                      const py::object& progress) {
+                      const std::string& vertex, const py::object& progress) {
   const Parameters parameters = parameters_of(given, no_weights);
   return work_on(progress, [&](const auto& on_progress) {
     return dump.ablate(parameters, {to_passes(passes), camera, reference, metric, epsilon, exposure,
-                                    crop, columns, max_memory, on_progress});
+                                    crop, columns, max_memory, vertex, on_progress});
   });
 }
 
 using Pixel = std::tuple<std::uint32_t, std::uint32_t>;
 Explanation explain(const Dump& dump, const std::optional<Pixel>& pixel, std::uint64_t path,
                     const Texts& given, bool no_weights, const PassRange& passes,
-                    std::size_t camera, const py::object& progress) {
+                    std::size_t camera, const std::string& vertex, const py::object& progress) {
   const Parameters parameters = parameters_of(given, no_weights);
   return work_on(progress, [&](const auto& on_progress) {
-    const ExplainOptions options = {to_passes(passes), camera, on_progress};
+    const ExplainOptions options = {to_passes(passes), camera, vertex, on_progress};
     if (!pixel) return dump.explain_path(path, parameters, options);
     return dump.explain(std::get<0>(*pixel), std::get<1>(*pixel), parameters, options);
   });

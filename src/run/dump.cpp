@@ -70,8 +70,10 @@ void make_finite(std::vector<float>& coverage, std::uint64_t& not_finite) {
 }  // namespace
 
 Dump::Dump(const std::string& path, const std::optional<VertexRule>& rule)
-    : reader_(path), metadata_(metadata_of(reader_)), rule_(rule) {
-  if (rule_) static_cast<void>(VertexCut(reader_, *rule_, metadata_.shade_rate));
+    : reader_(std::make_shared<formats::Reader>(path)),
+      metadata_(metadata_of(*reader_)),
+      rule_(rule) {
+  if (rule_) static_cast<void>(VertexCut(*reader_, *rule_, metadata_.shade_rate));
   if (metadata_.cameras.empty()) {
     throw Error(ErrorCode::bad_input,
                 path +
@@ -88,34 +90,45 @@ Dump::Dump(const std::string& path, const std::optional<VertexRule>& rule)
     cameras_.push_back({camera.width, camera.height, camera.angle_per_pixel});
     pixels_ += std::uint64_t{camera.width} * camera.height;
   }
-  if (reader_.records() == 0) {
+  if (reader_->records() == 0) {
     throw Error(ErrorCode::bad_input,
                 path + ": holds no committed pass yet; wait for the renderer's first one");
   }
   set_pass_bounds();
 }
 
+Dump Dump::at(const std::optional<VertexRule>& rule) const {
+  Dump other(*this);
+  other.rule_ = rule;
+  if (rule) static_cast<void>(VertexCut(*reader_, *rule, metadata_.shade_rate));
+  return other;
+}
+
+std::uint64_t Dump::vertex_memory() const {
+  return rule_ ? VertexCut(*reader_, *rule_, metadata_.shade_rate).memory() : 0;
+}
+
 bool Dump::refresh() {
-  if (!reader_.refresh()) return false;
+  if (!reader_->refresh()) return false;
   set_pass_bounds();
   return true;
 }
 
 void Dump::set_pass_bounds() {
   pass_bounds_.clear();
-  for (const formats::Pass& pass : reader_.passes()) pass_bounds_.push_back(pass.first);
-  pass_bounds_.push_back(reader_.records());
+  for (const formats::Pass& pass : reader_->passes()) pass_bounds_.push_back(pass.first);
+  pass_bounds_.push_back(reader_->records());
 }
 
 bool Dump::has(std::string_view channel) const {
-  return reader_.head().find(channel) &&
-         (!rule_ || VertexCut(reader_, *rule_, metadata_.shade_rate).has(channel));
+  return reader_->head().find(channel) &&
+         (!rule_ || VertexCut(*reader_, *rule_, metadata_.shade_rate).has(channel));
 }
 
 std::optional<std::size_t> Dump::find(std::string_view channel) const {
-  const std::optional<std::size_t> place = reader_.head().find(channel);
+  const std::optional<std::size_t> place = reader_->head().find(channel);
   if (!place || !has(channel)) return std::nullopt;
-  const formats::Channel& found = reader_.head().channels[*place];
+  const formats::Channel& found = reader_->head().channels[*place];
   const formats::ChannelInfo& known = *formats::channel_info(channel);
   const bool octahedral = found.encoding == formats::Encoding::octahedral;
   const bool fits =
@@ -123,8 +136,8 @@ std::optional<std::size_t> Dump::find(std::string_view channel) const {
   if (!fits || found.decoded_components() != known.components) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("{}: channel {} is {} x {}, expected {} x {}; see formats/README.md",
-                            reader_.path(), channel, formats::name_of(found.type), found.components,
-                            formats::name_of(known.type), known.components));
+                            reader_->path(), channel, formats::name_of(found.type),
+                            found.components, formats::name_of(known.type), known.components));
   }
   return place;
 }
@@ -135,7 +148,7 @@ std::size_t Dump::require(std::string_view channel, std::string_view wanted_by,
   if (place) return *place;
   throw Error(ErrorCode::bad_input,
               fmt::format("{}: has no channel {}, which {} needs; render a dump that has it{}",
-                          reader_.path(), channel, wanted_by,
+                          reader_->path(), channel, wanted_by,
                           instead.empty() ? "" : ", or " + std::string(instead)));
 }
 
@@ -146,7 +159,7 @@ void Dump::require_angles() const {
                 fmt::format("{}: {} has no angle per pixel, which a radius in pixels needs; write "
                             "\"angle_per_pixel\", in radians, into the metadata, or give the "
                             "radius as a fraction of the distance, `r0 0.02`",
-                            reader_.path(), called(camera)));
+                            reader_->path(), called(camera)));
   }
 }
 
@@ -170,7 +183,7 @@ ChannelSet Dump::select(const filter::Parameters& parameters, bool guides) const
       if (name == need.channel) member(set) = require(need.channel, need.wanted_by, need.instead);
     });
   }
-  set.photons = photon_channels(reader_, parameters);
+  set.photons = photon_channels(*reader_, parameters);
   if (guides) {
     set.normal = find("normal");
     set.reflectance = find("reflectance");
@@ -192,9 +205,9 @@ void Dump::read(const filter::PathRange& range, const ChannelSet& channels,
     tasks.push_back([this, &range, &column, &make_room, count, place = *place] {
       make_room(column);
       if constexpr (std::is_integral_v<std::decay_t<decltype(column[0])>>) {
-        reader_.read(place, range.first, count, std::as_writable_bytes(std::span(column)));
+        reader_->read(place, range.first, count, std::as_writable_bytes(std::span(column)));
       } else {
-        reader_.read_floats(place, range.first, count, as_floats(column));
+        reader_->read_floats(place, range.first, count, as_floats(column));
       }
     });
   };
@@ -214,8 +227,10 @@ void Dump::read(const filter::PathRange& range, const ChannelSet& channels,
     out.layer_views.push_back({layer.contribution, layer.unfiltered});
   }
   if (!channels.flags) out.flags.assign(count, filter::kHasVertex | filter::kShaded);
-  if (rule_) VertexCut(reader_, *rule_, metadata_.shade_rate).apply(range, out);
-  if (channels.photons) read_photons(reader_, *channels.photons, range, out.photons);
+  // Where x_i is not read, nothing of it is asked for.
+  if (rule_ && channels.position)
+    VertexCut(*reader_, *rule_, metadata_.shade_rate).apply(range, out);
+  if (channels.photons) read_photons(*reader_, *channels.photons, range, out.photons);
   check_pixels(range, out);
 }
 
@@ -229,12 +244,13 @@ void Dump::check_pixels(const filter::PathRange& range, const BlockRecords& reco
         ErrorCode::bad_input,
         fmt::format(
             "{}: record {}: camera {} does not exist, the metadata name {}; render it again",
-            reader_.path(), range.first + i, camera, cameras_.size()));
+            reader_->path(), range.first + i, camera, cameras_.size()));
   }
-  throw Error(ErrorCode::bad_input,
-              fmt::format("{}: record {}: pixel {} is outside the {} x {} of {}; render it again",
-                          reader_.path(), range.first + i, records.pixel[i], cameras_[camera].width,
-                          cameras_[camera].height, called(metadata_.cameras[camera])));
+  throw Error(
+      ErrorCode::bad_input,
+      fmt::format("{}: record {}: pixel {} is outside the {} x {} of {}; render it again",
+                  reader_->path(), range.first + i, records.pixel[i], cameras_[camera].width,
+                  cameras_[camera].height, called(metadata_.cameras[camera])));
 }
 
 }  // namespace psf::run

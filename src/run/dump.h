@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,11 +35,16 @@ class Dump {
   // path. Without one x_i is what the file says.
   explicit Dump(const std::string& path, const std::optional<VertexRule>& rule = {});
 
+  // The same file, which stays open as long as one of the two, with another choice of x_i; none:
+  // what the file says. Throws what VertexCut throws. What is refreshed is the one that refresh() is
+  // called on.
+  [[nodiscard]] Dump at(const std::optional<VertexRule>& rule) const;
+
   // Takes in what was committed since the file was read; returns whether there was anything new.
   // Throws what the constructor throws.
   bool refresh();
 
-  [[nodiscard]] const formats::Reader& reader() const { return reader_; }
+  [[nodiscard]] const formats::Reader& reader() const { return *reader_; }
   [[nodiscard]] const formats::Metadata& metadata() const { return metadata_; }
   [[nodiscard]] const std::vector<filter::CameraView>& cameras() const { return cameras_; }
   [[nodiscard]] std::uint64_t pixels() const { return pixels_; }  // number over all cameras
@@ -46,6 +52,8 @@ class Dump {
   [[nodiscard]] const std::vector<std::uint64_t>& pass_bounds() const { return pass_bounds_; }
 
   [[nodiscard]] const std::optional<VertexRule>& vertex_rule() const { return rule_; }
+  // The most bytes that the choice of the vertex takes beside the records; 0 without a rule.
+  [[nodiscard]] std::uint64_t vertex_memory() const;
   // Whether the paths have a channel, for the vertex that is chosen.
   [[nodiscard]] bool has(std::string_view channel) const;
 
@@ -70,7 +78,7 @@ class Dump {
   void require_angles() const;
   void check_pixels(const filter::PathRange& range, const BlockRecords& records) const;
 
-  formats::Reader reader_;
+  std::shared_ptr<formats::Reader> reader_;
   formats::Metadata metadata_;
   std::vector<filter::CameraView> cameras_;
   std::uint64_t pixels_ = 0;

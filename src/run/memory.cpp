@@ -32,13 +32,15 @@ constexpr std::uint64_t kReaderCache = 32 * kMiB;
 
 constexpr std::streamsize kLongestLine = 1 << 20;  // longest line of a file in /proc
 
-// The bytes per record in memory for the channels that are read; flags are always there.
-std::uint64_t record_bytes(const ChannelSet& set) {
+// The bytes per record in memory for the channels that are read, and those that are made where a
+// file has none: flags, and with a choice of the vertex u.
+std::uint64_t record_bytes(const Dump& dump, const ChannelSet& set) {
   std::uint64_t bytes = 0;
   filter::for_each_channel([&](std::string_view name, const auto& member) {
     using Value =
         typename std::decay_t<decltype(member(std::declval<BlockRecords&>()))>::value_type;
-    if (member(set) || name == "flags") bytes += sizeof(Value);
+    const bool made = name == "flags" || (name == "unfiltered" && dump.vertex_rule());
+    if (member(set) || made) bytes += sizeof(Value);
   });
   for (const LightLayer& layer : set.layers) {
     bytes += sizeof(Rgb) * (layer.contribution ? 1 : 0) + sizeof(Rgb) * (layer.unfiltered ? 1 : 0);
@@ -109,7 +111,7 @@ class Planner {
   Planner(const Dump& dump, const ChannelSet& channels, const MemoryRequest& request)
       : dump_(dump),
         r_(request),
-        record_bytes_(record_bytes(channels)),
+        record_bytes_(record_bytes(dump, channels)),
         photon_bytes_(channels.photons ? photon_bytes(*channels.photons) : 0) {
     for (const LightLayer& layer : channels.layers) {
       if (layer.contribution) ++averaged_layers_;
@@ -119,7 +121,8 @@ class Planner {
   [[nodiscard]] MemoryEstimate estimate(const BlockSize& size, std::uint64_t blocks) const {
     const std::uint64_t longest = longest_block(size, dump_, r_.first_pass, r_.last_pass);
     MemoryEstimate result;
-    result.program = kProgram + kThread * core::thread_count() + reader_bytes(dump_, size);
+    result.program = kProgram + kThread * core::thread_count() + reader_bytes(dump_, size) +
+                     dump_.vertex_memory();
     result.pictures = dump_.pixels() * r_.bytes_a_pixel;
     result.block = longest * record_bytes_;
     result.blocks = blocks;

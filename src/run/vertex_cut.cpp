@@ -16,7 +16,8 @@ namespace psf::run {
 namespace {
 
 constexpr std::size_t kPathsAtOnce = 8192;
-constexpr std::uint8_t kSelected = 1;  // bit of the channel `flags` of a vertex
+constexpr std::uint64_t kRowsAtOnce = 32768;  // unless one path has more
+constexpr std::uint8_t kSelected = 1;         // bit of the channel `flags` of a vertex
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 const formats::TableReader& vertices_of(const formats::Reader& reader) {
@@ -69,10 +70,32 @@ void VertexCut::apply(const filter::PathRange& range, BlockRecords& out) const {
     }
     core::parallel_for(static_cast<std::size_t>(last - first), kPathsAtOnce,
                        [&](std::size_t begin, std::size_t end) {
-                         cut(pass, first + begin, first + end,
-                             static_cast<std::size_t>(first - range.first) + begin, out);
+                         // A thread that waits for its reader does not begin with other paths.
+                         core::undisturbed([&] {
+                           cut(pass, first + begin, first + end,
+                               static_cast<std::size_t>(first - range.first) + begin, out);
+                         });
                        });
   }
+}
+
+std::uint64_t VertexCut::memory() const {
+  std::uint64_t chunk = 0, widest = 0;
+  for (const formats::ChunkEntry& entry : table_.chunks()) {
+    chunk = std::max<std::uint64_t>(chunk, entry.count);
+  }
+  for (const formats::Channel& channel : table_.schema().channels) {
+    widest = std::max<std::uint64_t>(widest, channel.stride());
+  }
+  constexpr std::uint64_t kRow = 3 * sizeof(std::uint32_t) + sizeof(std::uint8_t) +
+                                 3 * sizeof(Vec3) + 5 * sizeof(Rgb) + 2 * sizeof(float);
+  // A column as stored, in its own order and in that of the file, as the reader of paths has them.
+  constexpr std::uint64_t kColumns = 3;
+  const std::uint64_t kept = std::min<std::uint64_t>(formats::TableReader::kCacheBytes,
+                                                     table_.records() * table_.schema().stride());
+  return core::thread_count() * (kRowsAtOnce * kRow + kColumns * chunk * widest) + kept +
+         2 * table_.chunks().size() * sizeof(formats::ChunkEntry) +
+         table_.passes().size() * sizeof(formats::Pass);
 }
 
 // Paths [first, last) of a pass, which are the records from `place` on.
@@ -82,6 +105,11 @@ void VertexCut::cut(std::uint64_t pass, std::uint64_t first, std::uint64_t last,
   const formats::Pass& rows = table_.passes()[pass];
   const std::uint64_t from = row_of(rows, static_cast<std::uint32_t>(first - start));
   const std::uint64_t to = row_of(rows, static_cast<std::uint32_t>(last - start));
+  if (to - from > kRowsAtOnce && last - first > 1) {
+    const std::uint64_t half = first + (last - first) / 2;
+    cut(pass, first, half, place, out);
+    return cut(pass, half, last, place + static_cast<std::size_t>(half - first), out);
+  }
   const Vertices vertices = read(from, to, out);
   std::size_t row = 0;
   while (row < vertices.path.size()) {

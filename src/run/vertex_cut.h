@@ -28,9 +28,11 @@ class VertexCut {
 
   // Changes the records of the paths of `range`, which are those of `out`. Where the rule selects
   // what the renderer has selected, a record stays as it is, to the last bit. A path of which it
-  // selects nothing has no vertex. Paths are cut in parallel, some thousand at a time, which bounds
-  // the memory. Throws Error{bad_input} where a path has no chain of vertices.
+  // selects nothing has no vertex. Paths are cut in parallel, some thousand vertices at a time, which
+  // bounds the memory. Throws Error{bad_input} where a path has no chain of vertices.
   void apply(const filter::PathRange& range, BlockRecords& out) const;
+  // The most bytes that apply() takes beside the records, and that its reader keeps.
+  [[nodiscard]] std::uint64_t memory() const;
 
  private:
   struct Vertices;  // of some paths

@@ -52,4 +52,8 @@ std::string to_text(const VertexRule& rule) {
   return std::string(kFirstRough);
 }
 
+std::optional<VertexRule> vertex_rule_of(const std::string& text) {
+  return text.empty() ? std::nullopt : std::optional(parse_vertex_rule(text));
+}
+
 }  // namespace psf::run

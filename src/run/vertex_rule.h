@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace psf::run {
@@ -23,5 +24,8 @@ struct VertexRule {
 // be written.
 [[nodiscard]] VertexRule parse_vertex_rule(const std::string& text);
 [[nodiscard]] std::string to_text(const VertexRule& rule);
+
+// The same of an option that may not be given: empty is no rule.
+[[nodiscard]] std::optional<VertexRule> vertex_rule_of(const std::string& text);
 
 }  // namespace psf::run

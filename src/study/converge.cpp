@@ -71,7 +71,7 @@ class Study {
   Study(std::span<const std::string> paths, const metrics::Reference& reference,
         std::span<const Rgb> reference_picture, const ConvergeRequest& convergence)
       : reference_(reference), picture_(reference_picture), c_(convergence) {
-    for (const std::string& path : paths) dumps_.emplace_back(path);
+    for (const std::string& path : paths) dumps_.emplace_back(path, c_.vertex);
     check_replicates(dumps_, c_.n.back());
     series_.resize(c_.sets.size() + 1);
     for (std::size_t k = 0; k < c_.sets.size(); ++k) series_[k + 1].parameters = c_.sets[k];

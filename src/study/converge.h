@@ -39,6 +39,7 @@ struct ConvergeRequest {
   std::span<const filter::Parameters> sets;
   std::vector<std::uint64_t> n;  // numbers of passes, ascending; every dump has at least the last
   std::size_t camera = 0;
+  std::optional<run::VertexRule> vertex;  // of all dumps
   bool with_times = true;  // measure filter_seconds, which takes one more run per set
   // The limit in bytes of the filter's memory, as for --max-memory; the replicates' pictures may
   // take as much again. Sets that do not fit wait for another traversal.

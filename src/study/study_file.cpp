@@ -22,18 +22,20 @@ Json describe_input(const run::Dump& dump, const run::PassSelection& passes, std
   const formats::Metadata& metadata = dump.metadata();
   const std::size_t last = run::last_pass(dump, passes);
   const filter::CameraView& view = dump.cameras()[camera];
-  return {{"file", dump.reader().path()},
-          {"uuid", dump.reader().uuid()},
-          {"scene", metadata.scene},
-          {"integrator", metadata.integrator},
-          {"sampler", metadata.sampler},
-          {"seed", metadata.seed},
-          {"first_pass", passes.first},
-          {"passes", last - passes.first},
-          {"records", dump.pass_bounds()[last] - dump.pass_bounds()[passes.first]},
-          {"width", view.width},
-          {"height", view.height},
-          {"camera", metadata.cameras[camera].name}};
+  Json json = {{"file", dump.reader().path()},
+               {"uuid", dump.reader().uuid()},
+               {"scene", metadata.scene},
+               {"integrator", metadata.integrator},
+               {"sampler", metadata.sampler},
+               {"seed", metadata.seed},
+               {"first_pass", passes.first},
+               {"passes", last - passes.first},
+               {"records", dump.pass_bounds()[last] - dump.pass_bounds()[passes.first]},
+               {"width", view.width},
+               {"height", view.height},
+               {"camera", metadata.cameras[camera].name}};
+  if (dump.vertex_rule()) json["vertex"] = to_text(*dump.vertex_rule());
+  return json;
 }
 
 Json describe_reference(const std::string& file, std::span<const Rgb> picture) {

@@ -24,7 +24,7 @@ inline constexpr int kStudyFormat = 1;  // raised where readers have to know of 
 // `value`, or null where it is not finite.
 [[nodiscard]] Json number_or_null(double value);
 
-// Describes the dump, the passes and the camera of a study.
+// Describes the dump, the passes, the camera and, where one is chosen, the vertex of a study.
 [[nodiscard]] Json describe_input(const run::Dump& dump, const run::PassSelection& passes,
                                   std::size_t camera);
 // Describes a reference. `file`: the name that the user gave. A checksum tells pictures apart.

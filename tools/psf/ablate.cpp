@@ -30,6 +30,7 @@
 #include "study_folder.h"
 #include "verbs.h"
 #include "version.h"
+#include "vertex_option.h"
 
 namespace psf::tools {
 namespace fs = std::filesystem;
@@ -37,7 +38,7 @@ namespace {
 
 struct AblateOptions : filter::ParameterTexts {
   CommonOptions common;
-  std::string input, passes, camera, reference, reference_layer, crop;
+  std::string input, vertex, passes, camera, reference, reference_layer, crop;
   std::vector<std::string> outputs;
   std::string metric = "relMSE";
   metrics::MetricOptions metrics;
@@ -157,7 +158,8 @@ void measure(const AblateOptions& options, const AblateOutputs& outputs, const r
     sheet.add(row, picture);
     const std::string name = study::ablation_picture(number++);
     if (!report.with_pictures) return;
-    write_study_picture(outputs.in_folder(name), view.width, view.height, picture, row.parameters);
+    write_study_picture(outputs.in_folder(name), view.width, view.height, picture, row.parameters,
+                        dump.vertex_rule());
   };
   study::ablate(dump, request, report.rows);
   progress.finish();
@@ -168,7 +170,7 @@ void write_study(study::AblateReport& report, const AblateOutputs& outputs,
   if (truth.prepared) {
     const film::Picture& picture = truth.picture;
     write_study_picture(outputs.in_folder("reference.exr"), picture.width, picture.height,
-                        picture.colors, std::nullopt);
+                        picture.colors, std::nullopt, std::nullopt);
     report.reference["picture"] = "reference.exr";
   }
   core::write_text_file(outputs.in_folder("ablate.csv"), study::to_csv(report));
@@ -181,7 +183,7 @@ void run(const AblateOptions& options) {
   const AblateOutputs outputs(options.outputs);
   const metrics::Metric metric = metrics::parse_metric(options.metric);
   options.metrics.validate();
-  const run::Dump dump(options.input);
+  const run::Dump dump = open_dump(options.input, options.vertex);
   std::vector<std::string> notes;
   study::AblateRequest request = request_of(options, dump, notes);
   const AblateReference truth(options, dump, request.camera, notes);
@@ -214,6 +216,7 @@ void add_ablate(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "ablate", "show what each weight, the blocks and iterations do, on one sheet");
   command->add_option("IN", options.input, "path-vertex buffer")->required()->type_name("FILE.pvb");
+  add_vertex(*command, options.vertex);
   command
       ->add_option("-o,--output", options.outputs,
                    "sheet of all pictures with labels, .png, or folder for psf report; may be "

@@ -25,6 +25,7 @@
 #include "study_folder.h"
 #include "verbs.h"
 #include "version.h"
+#include "vertex_option.h"
 
 namespace psf::tools {
 namespace {
@@ -34,6 +35,7 @@ struct ConvergeOptions {
   ParameterLists lists;
   StudyOptions study;
   std::vector<std::string> inputs, render_figures;
+  std::string vertex;
   bool all_metrics = false, no_times = false, analytic = false;
 };
 
@@ -57,7 +59,7 @@ study::ConvergeReport describe(const ConvergeOptions& options, const StudyFolder
   report.metrics = study::describe_metrics(report.measured, folder.metric_options());
   report.reference = study::describe_reference(options.study.reference, folder.reference_picture());
   for (const std::string& path : options.inputs) {
-    const run::Dump replicate(path);
+    const run::Dump replicate = open_dump(path, options.vertex);
     fit_terms(replicate, sets, filter::asked_terms(options.lists.given), notes);
     report.inputs.push_back(
         study::describe_input(replicate, {0, folder.passes().last}, folder.camera()));
@@ -88,7 +90,7 @@ void print_and_write(const ConvergeOptions& options, const std::string& folder,
 
 void run_dumps(const ConvergeOptions& options) {
   std::vector<filter::Parameters> sets = all_sets(options.lists);
-  const run::Dump dump(options.inputs.front());
+  const run::Dump dump = open_dump(options.inputs.front(), options.vertex);
   std::vector<std::string> notes;
   const StudyFolder folder(options.study, dump, notes);
   study::check_none_there(study::ConvergePaths(folder.path()).json);
@@ -105,6 +107,7 @@ void run_dumps(const ConvergeOptions& options) {
   request.sets = sets;
   request.n = study::powers_up_to(run::last_pass(dump, folder.passes()));
   request.camera = folder.camera();
+  request.vertex = dump.vertex_rule();
   request.with_times = !options.no_times;
   request.max_memory = options.study.max_memory;
   make_folder(options, folder, request);
@@ -208,6 +211,7 @@ void add_converge(CLI::App& app) {
                    "path-vertex buffers: one, or replicates with other seeds, at least three for "
                    "intervals")
       ->type_name("FILE.pvb");
+  add_vertex(*command, options->vertex);
   add_study_options(*command, options->study, false);
   add_parameter_lists(*command, options->lists);
   command

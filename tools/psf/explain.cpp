@@ -18,13 +18,14 @@
 #include "option_values.h"
 #include "pass_range.h"
 #include "verbs.h"
+#include "vertex_option.h"
 
 namespace psf::tools {
 namespace {
 
 struct ExplainOptions : filter::ParameterTexts {
   CommonOptions common;
-  std::string input, passes, pixel, camera, ply;
+  std::string input, vertex, passes, pixel, camera, ply;
   std::optional<std::uint64_t> path;
   std::size_t top = 5;
   bool all = false;
@@ -73,7 +74,7 @@ void run(const ExplainOptions& options) {
   const core::ThreadLimit threads(options.common.threads);
   explain::ExplainRequest request = request_of(options);
   check_files({options.input}, {options.common.json, options.ply});
-  const run::Dump dump(options.input);
+  const run::Dump dump = open_dump(options.input, options.vertex);
   request.camera = camera_of(options, dump);
   std::vector<std::string> notes;
   fit_terms(dump, {&request.parameters, 1}, filter::asked_terms(options.given), notes);
@@ -104,6 +105,7 @@ void add_explain(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("explain", "say why a pixel of the filtered picture is what it is");
   command->add_option("IN", options.input, "path-vertex buffer")->required()->type_name("FILE.pvb");
+  add_vertex(*command, options.vertex);
   command->add_option("--pixel", options.pixel, "the pixel, 0,0 at the top left")
       ->type_name("X,Y")
       ->excludes(command

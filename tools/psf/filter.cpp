@@ -30,6 +30,7 @@
 #include "tuned.h"
 #include "verbs.h"
 #include "version.h"
+#include "vertex_option.h"
 
 namespace psf::tools {
 namespace {
@@ -156,7 +157,7 @@ void run(const FilterOptions& options) {
   const core::ThreadLimit threads(options.common.threads);
   run::FilterRequest run;
   FilterOptions chosen = options;
-  if (!options.tuned.empty()) read_tuned(options.tuned, chosen);
+  if (!options.tuned.empty()) read_tuned(options.tuned, chosen, chosen.vertex);
   run.parameters = filter::parameters_of(chosen);
   run.parameters.count_refusals = options.refusals;
   run.parameters.validate();
@@ -165,9 +166,7 @@ void run(const FilterOptions& options) {
   run.max_memory = options.max_memory;
   run.with_noise = !options.common.json.empty();
   if (options.follow) wait_for_first_pass(options.input);
-  run::Dump dump(options.input, options.vertex.empty()
-                                    ? std::nullopt
-                                    : std::optional(run::parse_vertex_rule(options.vertex)));
+  run::Dump dump = open_dump(options.input, chosen.vertex);
   std::vector<std::string> notes;
   fit_terms(dump, {&run.parameters, 1}, filter::asked_terms(chosen.given), notes);
   check_layers(dump, options.layers, run.layers);
@@ -181,6 +180,7 @@ void run(const FilterOptions& options) {
   FilterReport report;
   report.input = options.input;
   report.uuid = dump.reader().uuid();
+  report.vertex = dump.vertex_rule();
   report.parameters = run.parameters;
   report.cameras = dump.metadata().cameras;
   report.has_all_layers = options.layers == "all";

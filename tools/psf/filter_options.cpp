@@ -17,6 +17,7 @@
 #include "filter/parameters/text.h"
 #include "pass_range.h"
 #include "run/missing_terms.h"
+#include "vertex_option.h"
 
 namespace psf::tools {
 
@@ -66,7 +67,7 @@ void check_layers(const run::Dump& dump, const std::string& text,
                   const run::PictureLayers& layers) {
   if (text == "all") return;
   const auto need = [&](const char* layer, const char* channel) {
-    if (dump.reader().head().find(channel)) return;
+    if (dump.has(channel)) return;
     throw Error(ErrorCode::bad_input,
                 fmt::format("{}: has no channel {}, which --layers {} needs; leave it out",
                             dump.reader().path(), channel, layer));
@@ -115,12 +116,7 @@ void add_filter_options(CLI::App& command, FilterOptions& options) {
       ->required()
       ->type_name("FILE.exr|.png")
       ->allow_extra_args(false);
-  command
-      .add_option("--vertex", options.vertex,
-                  "average at another vertex of the same paths, where the dump has all "
-                  "(psf-render --vertices): the renderer's first rough one, that with K vertices "
-                  "before it, the first of at least roughness T, or at least D away")
-      ->type_name("first-rough|depth:K|roughness:T|distance:D");
+  add_vertex(command, options.vertex);
   command
       .add_option("--layers", options.layers,
                   "of an .exr beside the picture: all, none, or some of unfiltered-input, "

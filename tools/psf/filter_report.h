@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ namespace psf::tools {
 
 struct FilterReport {
   std::string input, uuid;
+  std::optional<run::VertexRule> vertex;  // none: that of the file
   filter::Parameters parameters;
   run::FilterResult outcome;
   std::vector<formats::CameraInfo> cameras;
@@ -117,6 +119,7 @@ inline void print_report(const FilterReport& report) {
                                   : core::counted(s.sources, "source", "sources");
   line("averaged", fmt::format("{} from {}; {} without vertex", core::with_commas(s.queries),
                                sources, core::with_commas(s.without_vertex)));
+  if (report.vertex) line("vertex", to_text(*report.vertex));
   line("radius", fmt::format("{}, delta {:.4g}, block {}", filter::to_text(p.radius),
                              p.radius.delta, filter::to_text(p.block)));
   line("weights", weights_text(p));
@@ -214,6 +217,7 @@ inline nlohmann::ordered_json to_json(const FilterReport& report) {
     json["photons"] = s.photons;
     json["photons_left_out"] = s.photons_left_out;
   }
+  if (report.vertex) json["vertex"] = to_text(*report.vertex);
   json["layers"] = report.outcome.pictures.empty() ? std::vector<std::string>()
                                                    : report.outcome.pictures[0].light_layers();
   const bool counted = report.parameters.count_refusals;

@@ -87,7 +87,8 @@ film::Picture read_reference(const std::string& path, const std::string& layer,
 
 void write_study_picture(const std::string& path, std::size_t width, std::size_t height,
                          std::span<const Rgb> picture,
-                         const std::optional<filter::Parameters>& parameters) {
+                         const std::optional<filter::Parameters>& parameters,
+                         const std::optional<run::VertexRule>& vertex) {
   film::Image image;
   image.width = width;
   image.height = height;
@@ -97,6 +98,7 @@ void write_study_picture(const std::string& path, std::size_t width, std::size_t
   image.add("", "RGB", values);
   image.attributes.emplace_back("psf:version", kVersion);
   if (parameters) {
+    if (vertex) image.attributes.emplace_back("psf:vertex", to_text(*vertex));
     for (const auto& [option, value] : filter::describe(*parameters)) {
       image.attributes.emplace_back("psf:" + option, value);
     }
@@ -109,7 +111,8 @@ StudyFolder::StudyFolder(const StudyOptions& options, const run::Dump& dump,
     : options_(options),
       passes_(parse_passes(options.passes)),
       metric_(metrics::parse_metric(options.metric)),
-      camera_(find_camera(dump, options.camera)) {
+      camera_(find_camera(dump, options.camera)),
+      vertex_(dump.vertex_rule()) {
   options_.metrics.validate();
   film::Picture image =
       read_reference(options_.reference, options_.reference_layer, dump, camera_, notes);
@@ -147,7 +150,7 @@ void StudyFolder::write_reference() const {
 
 void StudyFolder::write(const std::string& name, std::span<const Rgb> picture,
                         const std::optional<filter::Parameters>& parameters) const {
-  write_study_picture(file(name), width_, height_, picture, parameters);
+  write_study_picture(file(name), width_, height_, picture, parameters, vertex_);
 }
 
 }  // namespace psf::tools

@@ -64,6 +64,7 @@ class StudyFolder {
   run::PassSelection passes_;
   metrics::Metric metric_;
   std::size_t camera_ = 0, width_ = 0, height_ = 0;
+  std::optional<run::VertexRule> vertex_;
   std::vector<Rgb> reference_;
 };
 
@@ -76,9 +77,11 @@ class StudyFolder {
                                            const run::Dump& dump, std::size_t camera,
                                            std::vector<std::string>& notes);
 
-// Writes a picture as EXR, with `parameters`, if given, as its attributes.
+// Writes a picture as EXR, with `parameters`, if given, and the choice of the vertex of its dump as
+// its attributes.
 void write_study_picture(const std::string& path, std::size_t width, std::size_t height,
                          std::span<const Rgb> picture,
-                         const std::optional<filter::Parameters>& parameters);
+                         const std::optional<filter::Parameters>& parameters,
+                         const std::optional<run::VertexRule>& vertex);
 
 }  // namespace psf::tools

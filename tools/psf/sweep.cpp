@@ -22,6 +22,7 @@
 #include "study_folder.h"
 #include "verbs.h"
 #include "version.h"
+#include "vertex_option.h"
 
 namespace psf::tools {
 namespace {
@@ -30,7 +31,7 @@ struct SweepOptions {
   CommonOptions common;
   ParameterLists lists;
   StudyOptions study;
-  std::string input;
+  std::string input, vertex;
   bool resume = false;
 };
 
@@ -136,7 +137,7 @@ void run(const SweepOptions& options) {
   keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
   std::vector<filter::Parameters> asked = all_sets(options.lists);
-  const run::Dump dump(options.input);
+  const run::Dump dump = open_dump(options.input, options.vertex);
   std::vector<std::string> notes;
   fit_terms(dump, asked, filter::asked_terms(options.lists.given), notes);
   const StudyFolder folder(options.study, dump, notes);
@@ -172,6 +173,7 @@ void add_sweep(CLI::App& app) {
   command->add_option("IN", options->input, "path-vertex buffer")
       ->required()
       ->type_name("FILE.pvb");
+  add_vertex(*command, options->vertex);
   add_study_options(*command, options->study, true);
   add_parameter_lists(*command, options->lists);
   command->add_flag("--resume", options->resume, "skip the rows that the folder has already");

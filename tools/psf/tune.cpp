@@ -25,6 +25,7 @@
 #include "study_folder.h"
 #include "verbs.h"
 #include "version.h"
+#include "vertex_option.h"
 
 namespace psf::tools {
 namespace {
@@ -32,7 +33,7 @@ namespace {
 struct TuneOptions {
   CommonOptions common;
   ParameterLists lists;
-  std::string input, passes, camera;
+  std::string input, vertex, passes, camera;
   double epsilon = study::TuneRequest().epsilon;
   std::optional<std::uint64_t> max_memory;
 };
@@ -99,7 +100,7 @@ void run(const TuneOptions& options) {
   ParameterLists lists = options.lists;
   lists.given.try_emplace("r0", study::kTuneRadii);
   std::vector<filter::Parameters> sets = all_sets(lists);
-  const run::Dump dump(options.input);
+  const run::Dump dump = open_dump(options.input, options.vertex);
   std::vector<std::string> notes;
   fit_terms(dump, sets, filter::asked_terms(options.lists.given), notes);
   study::TuneRequest tune;
@@ -134,6 +135,7 @@ void add_tune(CLI::App& app) {
   command->add_option("IN", options->input, "path-vertex buffer")
       ->required()
       ->type_name("FILE.pvb");
+  add_vertex(*command, options->vertex);
   command->add_option("--passes", options->passes, kPassesHelp)->type_name("FIRST:LAST");
   command->add_option("--camera", options->camera, "which camera, where the dump has several")
       ->type_name("NAME");

@@ -8,7 +8,7 @@
 
 namespace psf::tools {
 
-void read_tuned(const std::string& path, filter::ParameterTexts& options) {
+void read_tuned(const std::string& path, filter::ParameterTexts& options, std::string& vertex) {
   const std::string remedy = "give what psf tune --json wrote";
   const study::Json json = study::read_study_file(path, "tune", remedy);
   for (const filter::Parameter& parameter : filter::parameter_table()) {
@@ -26,6 +26,13 @@ void read_tuned(const std::string& path, filter::ParameterTexts& options) {
     }
     options.given[name] = json[place].get<std::string>();
   }
+  const study::Json::json_pointer place("/input/vertex");
+  if (!vertex.empty() || !json.contains(place)) return;
+  if (!json[place].is_string()) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: {}: expected a text; {}", path, place.to_string(), remedy));
+  }
+  vertex = json[place].get<std::string>();
 }
 
 }  // namespace psf::tools

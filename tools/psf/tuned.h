@@ -7,7 +7,8 @@
 
 namespace psf::tools {
 
-// Throws Error{io} where the file cannot be read, Error{bad_input} where psf tune did not write it.
-void read_tuned(const std::string& path, filter::ParameterTexts& options);
+// `vertex`: the rule as written, which becomes that of the file where it is empty. Throws Error{io}
+// where the file cannot be read, Error{bad_input} where psf tune did not write it.
+void read_tuned(const std::string& path, filter::ParameterTexts& options, std::string& vertex);
 
 }  // namespace psf::tools

@@ -14,7 +14,7 @@ from psf._progress import Progress, shown
 from psf._psf import Camera, Channel
 from psf._studies import Ablation, Explanation, Tuning, camera_number, warn
 from psf._values import (FileName, Passes, Value, file_name, items, lists, pass_range, real, text,
-                         texts, whole, whole_or_none, with_underscores, wrong)
+                         texts, vertex_text, whole, whole_or_none, with_underscores, wrong)
 
 
 class _Column:
@@ -97,28 +97,33 @@ class Dump:
         raise KeyError(f"{self.path}: has no channel {channel}; it has {names}")
 
     def filter_all(self, *, passes: Passes = None, max_memory: int | None = None,
-                   no_weights: bool = False, progress: Progress = None,
+                   vertex: str | None = None, no_weights: bool = False, progress: Progress = None,
                    **parameters: Value) -> list[Picture]:
-        """What ``psf filter`` does: a picture of every camera."""
+        """What ``psf filter`` does: a picture of every camera.
+
+        ``vertex``, here and of the studies: average at another vertex of the paths, "first-rough",
+        "depth:1", "roughness:0.5" or "distance:20", where the dump has all.
+        """
         with shown(progress, "filter") as report:
             result = self._dump.filter(texts(parameters), no_weights,
                                        pass_range(passes, self.passes),
-                                       whole_or_none("max_memory", max_memory), report)
+                                       whole_or_none("max_memory", max_memory),
+                                       vertex_text(vertex), report)
         warn(result.notes)
         return [Picture(picture) for picture in result.take_pictures()]
 
     def filter(self, camera: str | None = None, *, passes: Passes = None,
-               max_memory: int | None = None, no_weights: bool = False,
+               max_memory: int | None = None, vertex: str | None = None, no_weights: bool = False,
                progress: Progress = None, **parameters: Value) -> Picture:
         """What ``psf filter`` does: the picture of a camera, the first unless named."""
         number = camera_number(self, camera)
-        pictures = self.filter_all(passes=passes, max_memory=max_memory, no_weights=no_weights,
-                                   progress=progress, **parameters)
+        pictures = self.filter_all(passes=passes, max_memory=max_memory, vertex=vertex,
+                                   no_weights=no_weights, progress=progress, **parameters)
         return pictures[number]
 
     def sweep(self, reference: Picture | FileName, *, metrics: str | Iterable[str] = "relMSE",
               camera: str | None = None, passes: Passes = None, max_memory: int | None = None,
-              no_weights: bool = False, progress: Progress = None,
+              vertex: str | None = None, no_weights: bool = False, progress: Progress = None,
               **parameters: Value | Iterable[Value]) -> list[dict[str, Any]]:
         """What ``psf sweep`` does: a row for each combination of the parameters' values.
 
@@ -132,13 +137,14 @@ class Dump:
             rows, notes = self._dump.sweep(picture, lists(parameters), no_weights, names,
                                            pass_range(passes, self.passes),
                                            whole_or_none("max_memory", max_memory),
-                                           camera_number(self, camera), report)
+                                           camera_number(self, camera), vertex_text(vertex),
+                                           report)
         warn(notes)
         return [with_underscores(row) for row in rows]
 
     def tune(self, *, camera: str | None = None, passes: Passes = None, epsilon: float = 0.01,
-             max_memory: int | None = None, no_weights: bool = False, progress: Progress = None,
-             **parameters: Value | Iterable[Value]) -> Tuning:
+             max_memory: int | None = None, vertex: str | None = None, no_weights: bool = False,
+             progress: Progress = None, **parameters: Value | Iterable[Value]) -> Tuning:
         """What ``psf tune`` does: the error of every combination of the parameters' values, without
         a reference, from independent parts of the passes.
 
@@ -149,7 +155,7 @@ class Dump:
             result = self._dump.tune(
                 lists(parameters), no_weights, pass_range(passes, self.passes),
                 camera_number(self, camera), real("epsilon", epsilon),
-                whole_or_none("max_memory", max_memory), report)
+                whole_or_none("max_memory", max_memory), vertex_text(vertex), report)
         warn(result.notes)
         return Tuning(result)
 
@@ -157,7 +163,7 @@ class Dump:
                epsilon: float = 0.01, exposure: float = 0,
                crop: tuple[int, int, int, int] | None = None, columns: int = 5,
                camera: str | None = None, passes: Passes = None, max_memory: int | None = None,
-               no_weights: bool = False, progress: Progress = None,
+               vertex: str | None = None, no_weights: bool = False, progress: Progress = None,
                **parameters: Value) -> Ablation:
         """What ``psf ablate`` does: the weights one after another, blocks against each other, and
         iterations of one pass.
@@ -175,13 +181,14 @@ class Dump:
                 camera_number(self, camera), picture, text("metric", metric),
                 real("epsilon", epsilon), real("exposure", exposure),
                 (place[0], place[1], place[2], place[3]), whole("columns", columns, 1 << 32),
-                whole_or_none("max_memory", max_memory), report)
+                whole_or_none("max_memory", max_memory), vertex_text(vertex), report)
         warn(result.notes)
         return Ablation(result)
 
     def explain(self, pixel: tuple[int, int] | None = None, *, path: int | None = None,
-                camera: str | None = None, passes: Passes = None, no_weights: bool = False,
-                progress: Progress = None, **parameters: Value) -> Explanation:
+                camera: str | None = None, passes: Passes = None, vertex: str | None = None,
+                no_weights: bool = False, progress: Progress = None,
+                **parameters: Value) -> Explanation:
         """What ``psf explain`` does: why a pixel of the filtered picture is what it is.
 
         ``pixel``: (x, y), (0, 0) at the top left; or one ``path``, by its number in the dump.
@@ -199,7 +206,8 @@ class Dump:
         with shown(progress, "explain") as report:
             explained = self._dump.explain(place, number, texts(parameters), no_weights,
                                            pass_range(passes, self.passes),
-                                           camera_number(self, camera), report)
+                                           camera_number(self, camera), vertex_text(vertex),
+                                           report)
         warn(explained.notes())
         return Explanation(explained)
 

@@ -100,6 +100,7 @@ class Dump:
         no_weights: bool,
         passes: tuple[int, int | None],
         max_memory: int | None,
+        vertex: str,
         progress: Callable[[int, int], object] | None,
     ) -> FilterResult: ...
     def sweep(
@@ -111,6 +112,7 @@ class Dump:
         passes: tuple[int, int | None],
         max_memory: int | None,
         camera: int,
+        vertex: str,
         progress: Callable[[int, int], object] | None,
     ) -> tuple[list[dict[str, Any]], list[str]]: ...
     def tune(
@@ -121,6 +123,7 @@ class Dump:
         camera: int,
         epsilon: float,
         max_memory: int | None,
+        vertex: str,
         progress: Callable[[int, int], object] | None,
     ) -> TuneResult: ...
     def ablate(
@@ -136,6 +139,7 @@ class Dump:
         crop: tuple[int, int, int, int],
         columns: int,
         max_memory: int | None,
+        vertex: str,
         progress: Callable[[int, int], object] | None,
     ) -> AblationResult: ...
     def explain(
@@ -146,6 +150,7 @@ class Dump:
         no_weights: bool,
         passes: tuple[int, int | None],
         camera: int,
+        vertex: str,
         progress: Callable[[int, int], object] | None,
     ) -> Explanation: ...
 
@@ -221,6 +226,7 @@ def converge(
     times: bool,
     render_json: Sequence[str],
     max_memory: int | None,
+    vertex: str,
     progress: Callable[[int, int], object] | None,
 ) -> ConvergeResult: ...
 def filter_records(

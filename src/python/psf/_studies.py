@@ -11,7 +11,7 @@ from psf import _psf
 from psf._picture import Picture, as_picture
 from psf._progress import Progress, shown
 from psf._values import (FileName, Value, file_name, items, lists, psf_error, real,
-                         whole_or_none, with_underscores)
+                         vertex_text, whole_or_none, with_underscores)
 
 if TYPE_CHECKING:
     from psf._dump import Dump
@@ -52,6 +52,8 @@ class Tuning(Figures):
         self._result = result
         self.rows = [with_underscores(row) for row in result.rows]
         self.best: dict[str, Any] = with_underscores(result.best)
+        if "vertex" in self["input"]:
+            self.best["vertex"] = self["input"]["vertex"]
 
     def save(self, path: FileName) -> None:
         """Writes the bytes of ``psf tune --json``; ``psf filter --tuned`` takes them."""
@@ -176,8 +178,8 @@ def converge(dumps: Dump | FileName | Iterable[Dump | FileName], reference: Pict
              passes: int | None = None, camera: str | None = None, epsilon: float = 0.01,
              all_metrics: bool = False, times: bool = True,
              renders: Mapping[str, Any] | FileName | Iterable[Mapping[str, Any] | FileName] = (),
-             max_memory: int | None = None, no_weights: bool = False, progress: Progress = None,
-             **parameters: Value | Iterable[Value]) -> Convergence:
+             max_memory: int | None = None, vertex: str | None = None, no_weights: bool = False,
+             progress: Progress = None, **parameters: Value | Iterable[Value]) -> Convergence:
     """What ``psf converge`` does: errors after 1, 2, 4, ... passes of every combination of the
     parameters' values.
 
@@ -198,6 +200,6 @@ def converge(dumps: Dump | FileName | Iterable[Dump | FileName], reference: Pict
             paths, picture, lists(parameters), no_weights, whole_or_none("passes", passes), number,
             real("epsilon", epsilon), all_metrics, times,
             [_render_text(one) for one in items(renders)],
-            whole_or_none("max_memory", max_memory), report)
+            whole_or_none("max_memory", max_memory), vertex_text(vertex), report)
     warn(result.notes)
     return Convergence(result)

@@ -83,6 +83,13 @@ def text(name: str, value: Any) -> str:
     raise wrong(name, "a number, text, True, False or None", value)
 
 
+def vertex_text(value: Any) -> str:
+    """A rule for the vertex as the commands take it; None: the vertex of the file, an empty text."""
+    if value is None or (isinstance(value, str) and value):
+        return value or ""
+    raise wrong("vertex", "a text such as 'depth:1', or None", value)
+
+
 def texts(given: Mapping[str, Value]) -> dict[str, str]:
     return {name.replace("_", "-"): text(name, value) for name, value in given.items()}
 

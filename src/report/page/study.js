@@ -65,6 +65,7 @@ function factsOf(study) {
   if (isNumber(first.width)) add('Size', `${first.width} \u00d7 ${first.height}`);
   if (isNumber(first.passes)) add('Passes', formatCount(first.passes));
   if (isNumber(first.records)) add('Records', formatCount(first.records));
+  add('Vertex', first.vertex);
   add('Integrator', first.integrator);
   add('Sampler', first.sampler);
   const seeds = inputs.map((input) => input.seed).filter((seed) => seed !== undefined);
