@@ -8,8 +8,8 @@
 
 #include "explain/remedies.h"
 #include "filter/channels.h"
+#include "filter/kinds.h"
 #include "filter/values.h"
-#include "filter/weights.h"
 #include "search/ball.h"
 
 namespace psf::explain {
@@ -86,8 +86,13 @@ class Tracer {
   }
 
   void count_refusals() {
-    for (std::size_t k = 0; k < filter::kTermCount; ++k) {
-      if (!e_.request.parameters.weights.on(static_cast<filter::Term>(k))) continue;
+    constexpr std::uint32_t kApart = filter::KindWeights::kApart;
+    static_assert(kApart == 1u << filter::kTermCount);
+    const bool kinds = std::any_of(e_.pairs.begin(), e_.pairs.end(),
+                                   [](const auto& pair) { return (pair.refusers & kApart) != 0; });
+    for (std::size_t k = 0; k < filter::kTermCount + (kinds ? 1 : 0); ++k) {
+      const bool is_term = k < filter::kTermCount;
+      if (is_term && !e_.request.parameters.weights.on(static_cast<filter::Term>(k))) continue;
       const std::uint32_t bit = 1u << k;
       TermRefusals of;
       of.term = k;
@@ -181,7 +186,7 @@ class Tracer {
   }
 
   void group() {
-    const filter::Weights weights(e_.vertices.view(), terms_that_tell_apart());
+    const filter::KindWeights weights(e_.vertices.view(), terms_that_tell_apart());
     std::map<std::uint32_t, KindShare> kinds;
     std::map<std::pair<std::uint16_t, std::uint32_t>, PixelShare> pixels;
     std::vector<bool> met(e_.record.size(), false);
@@ -269,7 +274,7 @@ PairFeatures features_of(const ExplainResult& explanation, const ExplainedPair& 
     return std::acos(std::clamp(double{dot(a, b)}, -1.0, 1.0)) * 180 / std::numbers::pi;
   };
   PairFeatures features;
-  if (!v.normal.empty()) {
+  if (!v.normal.empty() && !in_volume(v, i) && !in_volume(v, j)) {
     features.angle = degrees(v.normal[i], v.normal[j]);
     const Vec3 to_j(v.position[j].x - v.position[i].x, v.position[j].y - v.position[i].y,
                     v.position[j].z - v.position[i].z);

@@ -67,7 +67,7 @@ struct KindShare {
 // For a term that is on: the number of pairs in the balls that it refuses, the number that it alone
 // refuses, and the pixel without the term.
 struct TermRefusals {
-  std::size_t term = 0;
+  std::size_t term = 0;  // kTermCount: what keeps volumes and surfaces apart
   std::uint64_t refused = 0, alone = 0;
   Colour without{0, 0, 0};
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/error.h"
 #include "filter/estimators/disk.h"
@@ -28,17 +29,24 @@ BlockExplainer::BlockExplainer(const filter::Records& records, const filter::Blo
   records_ = scaled_->records();
   radius_ = scaled_->radius();
   weights_.emplace(records_, parameters.weights);
-  roles_.of = estimates_.roles;
+  add_kin(false);
+  if (filter::has_kinds_apart(records_)) add_kin(true);
+  if (filter::info(parameters.estimator).is_over_area) {
+    area_ = filter::disk_areas(records_, kin_[0].roles, block);
+  }
+}
+
+void BlockExplainer::add_kin(bool in_volumes) {
+  Kin kin;
+  kin.roles.of = estimates_.roles;
   std::vector<Vec3> positions;
-  for (std::uint32_t j = 0; j < records.size(); ++j) {
-    if (roles_.of[j] != filter::Role::source) continue;
-    roles_.sources.push_back(j);
+  for (std::uint32_t j = 0; j < records_.size(); ++j) {
+    if (!is_source(j) || records_.in_volume(j) != in_volumes) continue;
+    kin.roles.sources.push_back(j);
     positions.push_back(records_.position[j]);
   }
-  search_ = search::make_search(search::Kind::brute, positions);
-  if (filter::info(parameters.estimator).is_over_area) {
-    area_ = filter::disk_areas(records_, roles_, block);
-  }
+  kin.search = search::make_search(search::Kind::brute, positions);
+  kin_.push_back(std::move(kin));
 }
 
 ExplainedPath BlockExplainer::explain(std::uint32_t i, std::vector<ExplainedPair>& pairs,
@@ -46,7 +54,7 @@ ExplainedPath BlockExplainer::explain(std::uint32_t i, std::vector<ExplainedPair
   ExplainedPath path;
   path.vertex = i;
   path.fate = fate_of(i);
-  path.is_input = filter::is_input(roles_.of[i]);
+  path.is_input = filter::is_input(estimates_.roles[i]);
   if (path.fate == PathFate::no_vertex || path.fate == PathFate::left_out) return path;
   path.radius = radius_in_world_[i];
   path.c_bar = estimates_.c_bar[i];
@@ -66,13 +74,14 @@ Rgb BlockExplainer::value(std::uint32_t j) const {
   return demodulated ? filter::demodulate(c, records_.reflectance[j]) : c;
 }
 
-// Without area a ball holds its own value.
+// Without area a ball holds its own value; in volumes a disk is none.
 bool BlockExplainer::is_disk(std::uint32_t i) const {
-  return filter::info(parameters_.estimator).is_over_area && radius_[i] * radius_[i] > 0;
+  return filter::info(parameters_.estimator).is_over_area && radius_[i] * radius_[i] > 0 &&
+         !records_.in_volume(i);
 }
 
 PathFate BlockExplainer::fate_of(std::uint32_t i) const {
-  const filter::Role role = roles_.of[i];
+  const filter::Role role = estimates_.roles[i];
   if (role == filter::Role::left_out) return PathFate::left_out;
   if (!filter::is_query(role)) return PathFate::no_vertex;
   const Rgb u = records_.unfiltered.empty() ? Rgb(0, 0, 0) : records_.unfiltered[i];
@@ -86,16 +95,24 @@ PathFate BlockExplainer::fate_of(std::uint32_t i) const {
 void BlockExplainer::find_pairs(std::uint32_t i, std::vector<ExplainedPair>& pairs,
                                 std::atomic<std::int64_t>& room) const {
   std::vector<search::Neighbor> found;
-  search_->within(records_.position[i], radius_[i] * radius_[i], found);
-  if ((room -= static_cast<std::int64_t>(found.size()) + 1) < 0) {
+  std::vector<std::uint32_t> sources;
+  std::vector<float> d_sq;
+  for (const Kin& kin : kin_) {
+    kin.search->within(records_.position[i], radius_[i] * radius_[i], found);
+    for (const search::Neighbor& neighbor : found) {
+      sources.push_back(kin.roles.sources[neighbor.index]);
+      d_sq.push_back(neighbor.d_sq);
+    }
+  }
+  if ((room -= static_cast<std::int64_t>(sources.size()) + 1) < 0) {
     throw Error(ErrorCode::limit,
                 "the balls around this pixel's vertices hold too many sources to list; choose a "
                 "smaller `r0` or `block`, fewer `passes`, or one `path`");
   }
-  const auto add = [&](std::uint32_t j, float d_sq) {
+  const auto add = [&](std::uint32_t j, float squared) {
     ExplainedPair pair;
     pair.vertex = j;
-    pair.distance = scaled_->to_world(std::sqrt(d_sq));
+    pair.distance = scaled_->to_world(std::sqrt(squared));
     pair.self = j == i;
     pair.refusers = pair.self ? 0 : weights_->refusers(i, j, radius_[i]);
     pair.in_ball = true;
@@ -104,16 +121,16 @@ void BlockExplainer::find_pairs(std::uint32_t i, std::vector<ExplainedPair>& pai
     pairs.push_back(pair);
   };
   if (is_source(i)) add(i, 0);
-  for (const search::Neighbor& neighbor : found) {
-    const std::uint32_t j = roles_.sources[neighbor.index];
-    if (j != i) add(j, neighbor.d_sq);
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    if (sources[k] != i) add(sources[k], d_sq[k]);
   }
 }
 
 // Marks or adds the sources that an orphan averages; they have no areas.
 void BlockExplainer::adopt(std::uint32_t i, std::vector<ExplainedPair>& pairs) const {
-  const filter::Problem problem{records_, roles_, radius_, *weights_, {}};
-  for (const std::uint32_t j : filter::adopt(*search_, problem, i).sources) {
+  const Kin& kin = kin_[records_.in_volume(i) ? 1 : 0];
+  const filter::Problem problem{records_, kin.roles, radius_, weights_->like(i), {}};
+  for (const std::uint32_t j : filter::adopt(*kin.search, problem, i).sources) {
     auto pair = std::find_if(pairs.begin(), pairs.end(),
                              [j](const ExplainedPair& of) { return of.vertex == j; });
     if (pair == pairs.end()) {

@@ -10,10 +10,10 @@
 
 #include "explain/explain.h"
 #include "filter/estimate.h"
+#include "filter/kinds.h"
 #include "filter/orphans.h"
 #include "filter/roles.h"
 #include "filter/scaled.h"
-#include "filter/weights.h"
 #include "search/search.h"
 
 namespace psf::explain {
@@ -33,12 +33,19 @@ class BlockExplainer {
                                       std::atomic<std::int64_t>& room) const;
 
   [[nodiscard]] bool is_source(std::uint32_t j) const {
-    return roles_.of[j] == filter::Role::source;
+    return estimates_.roles[j] == filter::Role::source;
   }
   // The value of source j that is averaged.
   [[nodiscard]] Rgb value(std::uint32_t j) const;
 
  private:
+  // Vertices that are averaged together: of surfaces and curves, or in volumes.
+  struct Kin {
+    filter::Roles roles;                     // of all records, with the sources among these
+    std::unique_ptr<search::Search> search;  // over the sources
+  };
+
+  void add_kin(bool in_volumes);
   [[nodiscard]] bool is_disk(std::uint32_t i) const;
   [[nodiscard]] PathFate fate_of(std::uint32_t i) const;
   [[nodiscard]] double scale_of(std::uint32_t i, std::span<const ExplainedPair> pairs) const;
@@ -53,10 +60,9 @@ class BlockExplainer {
   std::optional<filter::Scaled> scaled_;
   filter::Records records_;        // in the unit of scaled_
   std::span<const float> radius_;  // in the unit of scaled_
-  std::optional<filter::Weights> weights_;
-  filter::Roles roles_;
-  std::vector<float> area_;                 // A_j of [disk]
-  std::unique_ptr<search::Search> search_;  // over the sources
+  std::optional<filter::KindWeights> weights_;
+  std::vector<Kin> kin_;     // surfaces, and volumes where there are any
+  std::vector<float> area_;  // A_j of [disk]
 };
 
 }  // namespace psf::explain

@@ -54,10 +54,16 @@ struct ExplainedPath {
 struct ExplainedPair {
   std::uint32_t path = 0, vertex = 0;  // places in ExplainResult::paths, ::vertices
   float distance = 0;                  // from x_i to x_j, world units
-  std::uint32_t refusers = 0;          // bit k: term k of filter::kTermNames; 0 for the path itself
-  float area = 1;                      // A_j of [disk], 1 for [average]
+  // Bit k: term k of filter::kTermNames, and filter::KindWeights::kApart; 0 for the path itself.
+  std::uint32_t refusers = 0;
+  float area = 1;  // A_j of [disk], 1 for [average]
   bool in_ball = false, averaged = false, self = false;
 };
+
+// Whether a vertex of the explanation is in a volume.
+[[nodiscard]] inline bool in_volume(const run::BlockRecords& vertices, std::uint32_t i) {
+  return !vertices.kind.empty() && vertices.kind[i] == filter::kVolume;
+}
 
 struct ExplainResult {
   ExplainRequest request;

@@ -50,7 +50,7 @@ class JsonWriter {
     json["candidates"] = w.candidates;
     json["refusals"] = Json::array();
     for (const TermRefusals& of : w.refusals) {
-      json["refusals"].push_back({{"term", filter::kTermNames[of.term]},
+      json["refusals"].push_back({{"term", term_name(of.term)},
                                   {"refused", of.refused},
                                   {"alone", of.alone},
                                   {"pixel_without", triple(of.without)}});
@@ -184,6 +184,7 @@ class JsonWriter {
     put("hit_distance", v.hit_distance, real);
     put("direction", v.direction, vec);
     put("material", v.material, as_is);
+    put("kind", v.kind, [](std::uint8_t kind) { return Json(kind_name(kind)); });
     if (!v.material.empty()) {
       const std::string name = material_name(report_.dump, v.material[i]);
       if (!name.empty()) row["material_name"] = name;

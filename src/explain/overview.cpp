@@ -2,10 +2,13 @@
 // paths.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <set>
 #include <vector>
@@ -59,6 +62,7 @@ class Overview {
       line("vertices", "none: nothing is averaged");
     } else {
       vertices();
+      kinds();
       surfaces();
       balls();
     }
@@ -102,15 +106,35 @@ class Overview {
     line("vertices", text);
   }
 
+  // How many are of which kind, where any is in a volume.
+  void kinds() {
+    std::map<std::uint8_t, std::uint64_t> counts;
+    for (const ExplainedPath* path : own_) {
+      if (!v_.kind.empty()) ++counts[v_.kind[path->vertex]];
+    }
+    if (!counts.contains(filter::kVolume)) return;
+    std::string text;
+    for (const auto& [kind, count] : counts) {
+      text += fmt::format("{}{} of a {}", text.empty() ? "" : ", ", core::with_commas(count),
+                          kind_name(kind));
+    }
+    line("kind", text);
+  }
+
   // What the vertices have in common, and how far they differ.
   void surfaces() {
     const std::uint32_t first = own_[0]->vertex;
+    const auto on_surface = std::find_if(own_.begin(), own_.end(), [this](const auto* path) {
+      return !in_volume(v_, path->vertex);
+    });
+    const bool has_normal = !v_.normal.empty() && on_surface != own_.end();
+    const Vec3 normal = has_normal ? v_.normal[(*on_surface)->vertex] : Vec3(0, 0, 0);
     double cosine = 1, reflectance = 0;
     std::set<std::uint32_t> materials, lights;
     for (const ExplainedPath* path : own_) {
       const std::uint32_t i = path->vertex;
-      if (!v_.normal.empty()) {
-        cosine = std::min(cosine, double{dot(v_.normal[first], v_.normal[i])});
+      if (has_normal && !in_volume(v_, i)) {
+        cosine = std::min(cosine, double{dot(normal, v_.normal[i])});
       }
       if (!v_.reflectance.empty()) {
         const float d_sq = search::distance_sq(v_.reflectance[first], v_.reflectance[i]);
@@ -119,10 +143,10 @@ class Overview {
       if (!v_.material.empty()) materials.insert(v_.material[i]);
       if (!v_.visibility.empty()) lights.insert(v_.visibility[i]);
     }
-    if (!v_.normal.empty()) {
+    if (has_normal) {
       const double angle = std::acos(std::max(cosine, -1.0)) * 180 / std::numbers::pi;
       line("normal",
-           point(v_.normal[first]) +
+           point(normal) +
                (angle < 0.05 ? "" : fmt::format(", others off by {:.1f} degrees", angle)));
     }
     if (!v_.reflectance.empty()) {

@@ -50,7 +50,7 @@ std::vector<Point> points_of(const ExplainResult& e, const Attribution& whence) 
 std::size_t first_term(std::uint32_t bits, std::uint32_t any) {
   const std::uint32_t of = bits != 0 ? bits : any;
   std::size_t k = 0;
-  while (k < filter::kTermCount - 1 && ((of >> k) & 1) == 0) ++k;
+  while (k < filter::kTermCount && ((of >> k) & 1) == 0) ++k;
   return k;
 }
 

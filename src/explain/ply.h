@@ -17,7 +17,8 @@ namespace psf::explain {
 //   float scalar_excess       the part of this share beyond what the pixel's own paths give
 //   float scalar_paths        number of the pixel's paths that average the vertex
 //   float scalar_distance     to the nearest of the pixel's vertices whose ball holds this vertex
-//   float scalar_refused_by   sum of 2^k over the terms k that refuse it in every ball, or 0
+//   float scalar_refused_by   sum of 2^k over the terms k that refuse it in every ball, or 0;
+//                             k = 8: one of the two is in a volume
 //   float scalar_x, scalar_y  pixel of the vertex
 //   double scalar_record      number of the vertex in the dump, for which float is too short
 // Lengths are in world units.
@@ -28,10 +29,11 @@ std::uint64_t write_ply(const ExplainResult& explanation, const Attribution& whe
                         const std::string& path);
 
 // The colour of each term of filter::kTermNames: blue, orange, sky blue, green, yellow, vermilion,
-// purple, black. Colour-blind people can tell these apart too (Okabe and Ito).
+// purple, black. Colour-blind people can tell these apart too (Okabe and Ito). The last is that of
+// what keeps volumes and surfaces apart: brown.
 inline constexpr std::uint8_t kTermColours[][3] = {{0, 114, 178},   {230, 159, 0},  {86, 180, 233},
                                                    {0, 158, 115},   {240, 228, 66}, {213, 94, 0},
-                                                   {204, 121, 167}, {0, 0, 0}};
-static_assert(std::size(kTermColours) == filter::kTermCount);
+                                                   {204, 121, 167}, {0, 0, 0},      {120, 72, 32}};
+static_assert(std::size(kTermColours) == filter::kTermCount + 1);
 
 }  // namespace psf::explain

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "filter/channels.h"
+#include "filter/kinds.h"
 #include "filter/values.h"
 
 namespace psf::explain {
@@ -67,8 +68,8 @@ Colour PixelIf::reflected(const ExplainedPath& path, const Averaged& averaged) c
   if (averaged.count == 0) return alpha * wide(path.c_bar);
   const double r = double{path.radius};
   const filter::Parameters& parameters = e_.request.parameters;
-  const bool disk =
-      filter::info(parameters.estimator).is_over_area && path.radius * path.radius > 0;
+  const bool disk = filter::info(parameters.estimator).is_over_area &&
+                    path.radius * path.radius > 0 && !in_volume(e_.vertices, path.vertex);
   Colour mean =
       averaged.sum / (disk ? std::numbers::pi * r * r : static_cast<double>(averaged.count));
   if (!parameters.demodulate) return alpha * mean;
@@ -92,7 +93,7 @@ std::vector<Remedy> find_remedies(const ExplainResult& explanation, const PixelI
     const auto term = static_cast<Term>(k);
     std::optional<std::pair<double, Remedy>> best;
     for (const float threshold : ladder(e, term)) {
-      const filter::Weights weights(e.vertices.view(), only(term, threshold));
+      const filter::KindWeights weights(e.vertices.view(), only(term, threshold));
       const auto passes = [&](const ExplainedPair& pair) {
         const ExplainedPath& path = e.paths[pair.path];
         return weights.pass(path.vertex, pair.vertex, path.radius);
@@ -111,8 +112,8 @@ std::vector<Remedy> find_remedies(const ExplainResult& explanation, const PixelI
       best.emplace(gain, remedy);
     }
     if (!best) continue;
-    const filter::Weights weights(e.vertices.view(),
-                                  only(term, best->second.threshold.value_or(1)));
+    const filter::KindWeights weights(e.vertices.view(),
+                                      only(term, best->second.threshold.value_or(1)));
     best->second.pixel = pixel_if([&](const ExplainedPair& pair) {
       const ExplainedPath& path = e.paths[pair.path];
       return pair.refusers == 0 && weights.pass(path.vertex, pair.vertex, path.radius);

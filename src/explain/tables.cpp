@@ -64,9 +64,9 @@ class Tables {
   // As the run has it: "normal 0.95", "visibility".
   [[nodiscard]] std::string term_text(std::size_t term) const {
     for (const auto& [name, value] : filter::describe(e_.request.parameters)) {
-      if (name == filter::kTermNames[term]) return name + (value == "on" ? "" : " " + value);
+      if (name == term_name(term)) return name + (value == "on" ? "" : " " + value);
     }
-    return filter::kTermNames[term];
+    return term_name(term);
   }
 
   void kinds() {

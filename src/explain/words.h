@@ -4,15 +4,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <iterator>
 #include <string>
 #include <utility>
 
 #include "explain/report.h"
+#include "filter/parameters/terms.h"
 
 namespace psf::explain {
 
 inline constexpr const char* kFateNames[] = {"averaged", "orphan", "without vertex", "left out",
                                              "overflowed"};
+
+// By the value of `kind`; others are like surfaces.
+inline constexpr const char* kKindNames[] = {"surface", "curve", "volume"};
+inline std::string kind_name(std::uint8_t kind) {
+  return kind < std::size(kKindNames) ? kKindNames[kind] : fmt::format("{}", kind);
+}
+
+// A term of TermRefusals.
+inline std::string term_name(std::size_t term) {
+  return term < filter::kTermCount ? filter::kTermNames[term] : "kind";
+}
 
 // A point as text; -0 is shown as 0.
 inline std::string point(const Vec3& v) {

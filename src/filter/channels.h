@@ -42,6 +42,8 @@ void for_each_channel(const Visit& visit) {
       "roughness", [](auto& of) -> auto& { return of.roughness; });
   visit(
       "alpha", [](auto& of) -> auto& { return of.coverage; });
+  visit(
+      "kind", [](auto& of) -> auto& { return of.kind; });
 }
 
 // Whether records have the channel of this name.

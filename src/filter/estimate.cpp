@@ -9,6 +9,7 @@
 #include "filter/estimators/disk.h"
 #include "filter/estimators/hash.h"
 #include "filter/inputs.h"
+#include "filter/kinds.h"
 #include "filter/scaled.h"
 
 namespace psf::filter {
@@ -24,6 +25,13 @@ Estimates estimate(const Records& records, std::span<const float> radius, const 
                    const Parameters& parameters) {
   parameters.validate();
   require_channels(records, parameters);
+  if (has_kinds_apart(records)) {
+    const std::vector<KindRun> runs = runs_of_kinds(records, parameters);
+    Estimates result = estimate(runs[0].records, radius, block, runs[0].parameters);
+    merge_volumes(records, radius, result,
+                  estimate(runs[1].records, radius, block, runs[1].parameters));
+    return result;
+  }
   const Scaled scaled(records, radius, info(parameters.estimator).least_share);
   const Method method = kMethods[static_cast<std::size_t>(parameters.estimator)];
   Estimates result = method({scaled.records(), scaled.radius(), block, parameters});

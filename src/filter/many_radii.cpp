@@ -11,6 +11,7 @@
 #include "filter/estimators/density.h"
 #include "filter/estimators/disk.h"
 #include "filter/inputs.h"
+#include "filter/kinds.h"
 #include "filter/radius.h"
 #include "filter/scaled.h"
 
@@ -214,7 +215,15 @@ ManyEstimates estimate_many(const Records& records, const Block& block,
                             const Parameters& parameters, std::span<const Radius> radii,
                             Receiver& receiver) {
   assert(!radii.empty());
-  return Many(records, block, parameters, radii, receiver).run();
+  if (!has_kinds_apart(records)) return Many(records, block, parameters, radii, receiver).run();
+  require_channels(records, parameters);
+  const std::vector<KindRun> runs = runs_of_kinds(records, parameters);
+  ManyEstimates result = Many(runs[0].records, block, runs[0].parameters, radii, receiver).run();
+  const ManyEstimates volumes =
+      Many(runs[1].records, block, runs[1].parameters, radii, receiver).run();
+  merge_volumes(records, result.roles, volumes.roles);
+  for (std::size_t k = 0; k < radii.size(); ++k) result.statistics[k] += volumes.statistics[k];
+  return result;
 }
 
 }  // namespace psf::filter

@@ -55,6 +55,10 @@ std::uint64_t memory_per_photon(const Parameters& parameters) {
   return kOfSet + tree_bytes(2 * kVector + compared(parameters));  // with directions
 }
 
+std::uint64_t memory_per_record_of_kinds(std::uint64_t layers) {
+  return (1 + layers) * kVector + 2 * kWord + 1;  // c_bar, neighbours, radius, role
+}
+
 std::uint64_t memory_per_layer(const Parameters& parameters) {
   // The average, and what is averaged in place of the contribution.
   constexpr std::uint64_t kValues = 2 * kVector;

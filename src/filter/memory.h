@@ -14,6 +14,9 @@ namespace psf::filter {
 // The most bytes per photon of a block that [density] needs, in addition to the photons themselves.
 [[nodiscard]] std::uint64_t memory_per_photon(const Parameters& parameters);
 // The most that a layer with contributions adds to it.
+// Bytes per record in addition where vertices in volumes are filtered apart: the results of the
+// others wait beside that run. `layers`: number of layers that are averaged.
+[[nodiscard]] std::uint64_t memory_per_record_of_kinds(std::uint64_t layers);
 [[nodiscard]] std::uint64_t memory_per_layer(const Parameters& parameters);
 
 }  // namespace psf::filter

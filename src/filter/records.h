@@ -9,6 +9,12 @@
 
 namespace psf::filter {
 
+// The value of `kind` of a vertex in a volume; every other is of a surface or a curve.
+constexpr std::uint8_t kVolume = 2;
+
+// Which of the vertices a run takes, where those in volumes are filtered apart: README.md, "Kinds".
+enum class Taken : std::uint8_t { all, surfaces, volumes };
+
 // Bits of `flags`, as in the file.
 constexpr std::uint8_t kHasVertex = 1;
 constexpr std::uint8_t kShaded = 2;
@@ -48,12 +54,19 @@ struct Records {
   std::span<const float> hit_distance;        // h_i, of the first ray from x_i; infinity: a miss
   std::span<const Vec3> direction;            // omega_i, unit, toward the camera
   std::span<const std::uint32_t> material;
-  std::span<const float> roughness;      // q_i, perceptual, of the smoothest lobe; 1: diffuse
-  std::span<const float> coverage = {};  // 0: the path is of the background; for pictures
-  std::span<const Layer> layers = {};    // averaged beside c_i, with the same weights
-  Photons photons = {};                  // not of the records' number
+  std::span<const float> roughness;         // q_i, perceptual, of the smoothest lobe; 1: diffuse
+  std::span<const float> coverage = {};     // 0: the path is of the background; for pictures
+  std::span<const Layer> layers = {};       // averaged beside c_i, with the same weights
+  Photons photons = {};                     // not of the records' number
+  std::span<const std::uint8_t> kind = {};  // what x_i lies on; empty: surfaces and curves alone
+  Taken taken = Taken::all;                 // the other vertices have no part
 
   [[nodiscard]] std::size_t size() const { return flags.size(); }
+  [[nodiscard]] bool in_volume(std::size_t i) const { return !kind.empty() && kind[i] == kVolume; }
+  // Whether record i, which has a vertex, is one of `taken`.
+  [[nodiscard]] bool takes(std::size_t i) const {
+    return taken == Taken::all || in_volume(i) == (taken == Taken::volumes);
+  }
 };
 
 // The properties of a camera that the filter uses.

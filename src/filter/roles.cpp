@@ -82,6 +82,7 @@ class Classifier {
       direction_ |= need.channel == kCheckedNames[kDirection];
       roughness_ |= need.channel == kCheckedNames[kRoughness];
     }
+    normal_ &= records.taken != Taken::volumes;
     shaded_alone_ = hit_distance_ && lacks_hits(records);
     for (const CameraView& camera : block.cameras) {
       pixels_ += std::uint64_t{camera.width} * camera.height;
@@ -91,8 +92,14 @@ class Classifier {
   // of[i] for records [begin, end), and what is counted of them.
   void classify(std::size_t begin, std::size_t end, std::span<Role> of,
                 Statistics& statistics) const {
+    std::size_t elsewhere = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const bool vertex = (r_.flags[i] & kHasVertex) != 0;
+      if (vertex ? !r_.takes(i) : r_.taken == Taken::volumes) {
+        of[i] = Role::left_out;  // of the other run, which counts it
+        ++elsewhere;
+        continue;
+      }
       const bool source = vertex && is_source(i);
       const std::uint32_t bits = bad_channels(i, vertex, source);
       of[i] = bits != 0     ? Role::left_out
@@ -105,7 +112,7 @@ class Classifier {
       statistics.sources += bits == 0 && source ? 1 : 0;
       statistics.without_vertex += bits == 0 && !vertex ? 1 : 0;
     }
-    statistics.records += end - begin;
+    statistics.records += end - begin - elsewhere;
   }
 
  private:

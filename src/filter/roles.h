@@ -38,7 +38,9 @@ struct Roles {
 // may be infinite (a miss) but not NaN: where an unshaded vertex has NaN, every unshaded record of
 // the block is left out and counted for `hit_distance`, so that paths that met nothing weigh no
 // more than paths that met a surface. Under demodulation c / rho must be finite too; a record where
-// it is not is counted for `reflectance`. Adds to the counts of `statistics`.
+// it is not is counted for `reflectance`. Adds to the counts of `statistics`. Records that
+// Records::taken leaves to another run are `left_out` and not counted; those without vertex are left
+// to that of surfaces.
 [[nodiscard]] Roles find_roles(const Records& records, const Block& block,
                                const Parameters& parameters, Statistics& statistics);
 

@@ -43,6 +43,7 @@ class Columns {
     view.visibility = one("visibility", r_.visibility);
     view.material = one("material", r_.material);
     view.camera = one("camera", r_.camera);
+    view.kind = one("kind", r_.kind);
     return view;
   }
 

@@ -40,6 +40,7 @@ struct Records {
   std::span<const std::uint32_t> material;    // (n), any numbers
   std::span<const std::uint16_t> camera;      // (n); empty: the first
   std::span<const std::uint8_t> flags;        // (n); empty: 3, with vertex and shaded
+  std::span<const std::uint8_t> kind;         // (n), 0 surface, 1 curve, 2 volume; empty: 0
 };
 
 // What became of n records, and the pictures of their cameras.

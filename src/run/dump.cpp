@@ -108,6 +108,10 @@ std::uint64_t Dump::vertex_memory() const {
   return rule_ ? VertexCut(*reader_, *rule_, metadata_.shade_rate).memory() : 0;
 }
 
+bool Dump::makes_kind() const {
+  return rule_ && VertexCut(*reader_, *rule_, metadata_.shade_rate).makes_kind();
+}
+
 bool Dump::refresh() {
   if (!reader_->refresh()) return false;
   set_pass_bounds();
@@ -176,6 +180,7 @@ ChannelSet Dump::select(const filter::Parameters& parameters, bool guides) const
   if (filter::needs_angle(parameters)) require_angles();
   set.flags = find("flags");
   set.unfiltered = find("unfiltered");
+  set.kind = find("kind");
   set.camera = cameras_.size() > 1 ? std::optional(require("camera", "a dump of several cameras"))
                                    : find("camera");
   for (const filter::ChannelNeed& need : filter::optional_channels(parameters)) {

@@ -23,7 +23,7 @@ namespace psf::run {
 struct ChannelSet {
   std::optional<std::size_t> flags, position, distance, throughput, contribution, unfiltered, pixel,
       camera, normal, reflectance, visibility, hit_distance, direction, material, roughness,
-      coverage;
+      coverage, kind;
   std::vector<LightLayer> layers;
   std::optional<PhotonChannels> photons;
 };
@@ -54,6 +54,8 @@ class Dump {
   [[nodiscard]] const std::optional<VertexRule>& vertex_rule() const { return rule_; }
   // The most bytes that the choice of the vertex takes beside the records; 0 without a rule.
   [[nodiscard]] std::uint64_t vertex_memory() const;
+  // Whether records have a kind that the vertex brings and the paths of the file do not have.
+  [[nodiscard]] bool makes_kind() const;
   // Whether the paths have a channel, for the vertex that is chosen.
   [[nodiscard]] bool has(std::string_view channel) const;
 

@@ -33,13 +33,14 @@ constexpr std::uint64_t kReaderCache = 32 * kMiB;
 constexpr std::streamsize kLongestLine = 1 << 20;  // longest line of a file in /proc
 
 // The bytes per record in memory for the channels that are read, and those that are made where a
-// file has none: flags, and with a choice of the vertex u.
+// file has none: flags, and with a choice of the vertex u and kind.
 std::uint64_t record_bytes(const Dump& dump, const ChannelSet& set) {
   std::uint64_t bytes = 0;
   filter::for_each_channel([&](std::string_view name, const auto& member) {
     using Value =
         typename std::decay_t<decltype(member(std::declval<BlockRecords&>()))>::value_type;
-    const bool made = name == "flags" || (name == "unfiltered" && dump.vertex_rule());
+    const bool made = name == "flags" || (name == "unfiltered" && dump.vertex_rule()) ||
+                      (name == "kind" && dump.makes_kind());
     if (member(set) || made) bytes += sizeof(Value);
   });
   for (const LightLayer& layer : set.layers) {
@@ -112,6 +113,7 @@ class Planner {
       : dump_(dump),
         r_(request),
         record_bytes_(record_bytes(dump, channels)),
+        has_kinds_(channels.kind.has_value() || dump.makes_kind()),
         photon_bytes_(channels.photons ? photon_bytes(*channels.photons) : 0) {
     for (const LightLayer& layer : channels.layers) {
       if (layer.contribution) ++averaged_layers_;
@@ -126,10 +128,12 @@ class Planner {
     result.pictures = dump_.pixels() * r_.bytes_a_pixel;
     result.block = longest * record_bytes_;
     result.blocks = blocks;
-    result.filter = longest * (filter::memory_per_record(r_.parameters) +
-                               averaged_layers_ * filter::memory_per_layer(r_.parameters) +
-                               r_.beside_a_record) +
-                    r_.beside;
+    result.filter =
+        longest * (filter::memory_per_record(r_.parameters) +
+                   averaged_layers_ * filter::memory_per_layer(r_.parameters) +
+                   (has_kinds_ ? filter::memory_per_record_of_kinds(averaged_layers_) : 0) +
+                   r_.beside_a_record) +
+        r_.beside;
     if (photon_bytes_ > 0) {
       const std::uint64_t photons = most_photons(size, dump_, r_.first_pass, r_.last_pass);
       result.block += photons * photon_bytes_;
@@ -195,7 +199,9 @@ class Planner {
 
   const Dump& dump_;
   const MemoryRequest& r_;
-  std::uint64_t record_bytes_, photon_bytes_, averaged_layers_ = 0;
+  std::uint64_t record_bytes_;
+  bool has_kinds_;
+  std::uint64_t photon_bytes_, averaged_layers_ = 0;
 };
 
 }  // namespace

@@ -32,7 +32,7 @@ const formats::TableReader& vertices_of(const formats::Reader& reader) {
 // Columns of consecutive rows; those that nothing asks for are empty.
 struct VertexCut::Vertices {
   std::vector<std::uint32_t> path, parent, material;
-  std::vector<std::uint8_t> flags;
+  std::vector<std::uint8_t> flags, kind;
   std::vector<Vec3> position, normal, direction;
   std::vector<Rgb> throughput, emission, direct, background, reflectance;
   std::vector<float> distance, roughness;
@@ -54,10 +54,16 @@ bool VertexCut::has(std::string_view channel) const {
   return channel != "visibility" && table_.schema().find(channel).has_value();
 }
 
+bool VertexCut::makes_kind() const {
+  return rule_.kind != VertexRule::Kind::first_rough && table_.schema().find("kind") &&
+         !reader_.head().find("kind");
+}
+
 void VertexCut::apply(const filter::PathRange& range, BlockRecords& out) const {
   const auto passes = reader_.passes();
   // A file without u has u = 0 for the vertex that the renderer selected, and not for others.
   if (out.unfiltered.empty()) out.unfiltered.assign(static_cast<std::size_t>(range.size()), Rgb(0));
+  if (makes_kind()) out.kind.assign(static_cast<std::size_t>(range.size()), 0);
   for (std::size_t pass = 0; pass < passes.size(); ++pass) {
     const std::uint64_t first = std::max(passes[pass].first, range.first);
     const std::uint64_t last = std::min(passes[pass].first + passes[pass].count, range.last);
@@ -87,7 +93,7 @@ std::uint64_t VertexCut::memory() const {
   for (const formats::Channel& channel : table_.schema().channels) {
     widest = std::max<std::uint64_t>(widest, channel.stride());
   }
-  constexpr std::uint64_t kRow = 3 * sizeof(std::uint32_t) + sizeof(std::uint8_t) +
+  constexpr std::uint64_t kRow = 3 * sizeof(std::uint32_t) + 2 * sizeof(std::uint8_t) +
                                  3 * sizeof(Vec3) + 5 * sizeof(Rgb) + 2 * sizeof(float);
   // A column as stored, in its own order and in that of the file, as the reader of paths has them.
   constexpr std::uint64_t kColumns = 3;
@@ -181,6 +187,7 @@ VertexCut::Vertices VertexCut::read(std::uint64_t first, std::uint64_t last,
   if (!out.direction.empty()) floats("direction", rows.direction);
   if (!out.reflectance.empty()) floats("reflectance", rows.reflectance);
   if (!out.material.empty()) numbers("material", rows.material);
+  if (!out.kind.empty() && rule_.kind != VertexRule::Kind::first_rough) numbers("kind", rows.kind);
   if (rule_.kind == VertexRule::Kind::roughness || !out.roughness.empty()) {
     floats("roughness", rows.roughness);
   }
@@ -221,6 +228,7 @@ void VertexCut::cut_path(const Vertices& rows, std::size_t first, std::size_t la
     out.throughput[i] = out.contribution[i] = Rgb(0, 0, 0);
     return;
   }
+  if (!rows.kind.empty()) out.kind[i] = rows.kind[v];
   if ((rows.flags[v] & kSelected) != 0 && (before & filter::kHasVertex) != 0) return;
   const bool shaded = all_shaded_ || (before & filter::kShaded) != 0;
   out.flags[i] = static_cast<std::uint8_t>(filter::kHasVertex | (shaded ? filter::kShaded : 0));

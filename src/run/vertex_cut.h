@@ -31,6 +31,9 @@ class VertexCut {
   // selects nothing has no vertex. Paths are cut in parallel, some thousand vertices at a time, which
   // bounds the memory. Throws Error{bad_input} where a path has no chain of vertices.
   void apply(const filter::PathRange& range, BlockRecords& out) const;
+  // Whether the vertices have a kind and the paths have none, so that apply() makes that channel. The
+  // renderer's own choice stays as the paths have it.
+  [[nodiscard]] bool makes_kind() const;
   // The most bytes that apply() takes beside the records, and that its reader keeps.
   [[nodiscard]] std::uint64_t memory() const;
 

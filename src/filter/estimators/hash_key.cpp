@@ -107,10 +107,16 @@ void KeyMaker::place(std::uint32_t i, double r_i, int coarser, CellKey& key) con
   key.level = static_cast<float>(std::ilogb(cell));
   const std::uint64_t bits = scramble(first_path_ + i);
   const double a = to_unit(bits) - 0.5, b = to_unit(bits << 32) - 0.5;
-  Vec3 u, v;
-  tangents(r_.normal[i], u, v);
+  Vec3 u(1, 0, 0), v(0, 1, 0), w(0, 0, 0);
+  double c = 0;
+  if (r_.in_volume(i)) {  // there is no surface to stay on
+    w.z = 1;
+    c = to_unit(scramble(bits)) - 0.5;
+  } else {
+    tangents(r_.normal[i], u, v);
+  }
   for (int axis = 0; axis < 3; ++axis) {
-    const double jitter = a * double{u[axis]} + b * double{v[axis]};
+    const double jitter = a * double{u[axis]} + b * double{v[axis]} + c * double{w[axis]};
     key.place[axis] = whole(double{r_.position[i][axis]} / cell + jitter + kOffset[axis]);
   }
 }

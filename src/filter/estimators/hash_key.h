@@ -44,7 +44,7 @@ class KeyMaker {
  public:
   // `scale`: world units, > 0; cells of all sizes differ by powers of two.
   // `first_path`: path number of record 0; a path's jitter depends on its number alone.
-  // Reads `position`, `normal` and the channels of `terms`.
+  // Reads `position`, `normal` (not of volumes) and the channels of `terms`.
   KeyMaker(const Records& records, const WeightTerms& terms, double scale,
            std::uint64_t first_path);
 

@@ -250,6 +250,7 @@ def filter_records(
     material: npt.NDArray[np.uint32] | None,
     camera: npt.NDArray[np.uint16] | None,
     flags: npt.NDArray[np.uint8] | None,
+    kind: npt.NDArray[np.uint8] | None,
 ) -> tuple[
     npt.NDArray[np.float32], npt.NDArray[np.uint32], npt.NDArray[np.float32], list[Picture]
 ]: ...

@@ -33,6 +33,7 @@ def filter_records(*, cameras: Sequence[Camera], position: npt.ArrayLike,
                    roughness: npt.ArrayLike | None = None,
                    visibility: npt.ArrayLike | None = None, material: npt.ArrayLike | None = None,
                    camera: npt.ArrayLike | None = None, flags: npt.ArrayLike | None = None,
+                   kind: npt.ArrayLike | None = None,
                    parameters: Mapping[str, Value] = {}, no_weights: bool = False,
                    n: float = 0, progress: Progress = None) -> FilteredRecords:
     """Filters records that are in memory, one block of a record a path, in path order.
@@ -55,7 +56,7 @@ def filter_records(*, cameras: Sequence[Camera], position: npt.ArrayLike,
         column("direction", direction, "f4", 3), column("hit_distance", hit_distance, "f4"),
         column("roughness", roughness, "f4"), column("visibility", visibility, "u4"),
         column("material", material, "u4"), column("camera", camera, "u2"),
-        column("flags", flags, "u1"))
+        column("flags", flags, "u1"), column("kind", kind, "u1"))
     with shown(progress, "filter_records") as report:
         c_bar, neighbors, radius, pictures = _psf.filter_records(
             list(cameras), texts(parameters), no_weights, real("n", n), report, *columns)
