@@ -72,7 +72,7 @@ float AoIntegrator::look(const Vertex& x, Sampler& sampler, std::uint64_t& rays)
   Hit hit;
   const float reach = transport_.settings().ao_distance;
   const bool met = transport_.accel().intersect(x.surface.origin_toward(direction),
-                                                normalize(direction), hit, reach);
+                                                normalize(direction), hit, reach, x.surface.time);
   return met ? hit.distance : std::numeric_limits<float>::infinity();
 }
 

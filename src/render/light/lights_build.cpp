@@ -139,6 +139,7 @@ float Lights::add(const Sphere& sphere, const Scene& scene) {
   r.texture = find_texture(scene, material.emission_texture);
   r.position = sphere.center;
   r.extent = sphere.radius;
+  if (!sphere.motion.empty()) r.sphere = &sphere;
   const float power = 4 * kPi * kPi * sphere.radius * sphere.radius * (r.both_sides ? 2.0f : 1.0f) *
                       mean_luminance(r.radiance, r.texture);
   lights_.push_back(std::move(r));

@@ -45,10 +45,10 @@ Transport::Transport(const Scene& scene, const IntegratorSettings& settings)
 float Transport::next_surface(const Walk& walk, Surface& surface, std::uint64_t& rays) const {
   ++rays;
   Hit hit;
-  if (!accel_.intersect(walk.ray.origin, walk.ray.direction, hit)) {
+  if (!accel_.intersect(walk.ray.origin, walk.ray.direction, hit, kEndless, walk.ray.time)) {
     return std::numeric_limits<float>::infinity();
   }
-  surface = shapes_.surface(hit, walk.ray.direction);
+  surface = shapes_.surface(hit, walk.ray.direction, walk.ray.time);
   if (walk.trail != nullptr) walk.trail->arrive(surface, walk.ray.direction, hit.distance);
   return hit.distance;
 }
@@ -112,8 +112,8 @@ Rgb Transport::direct_from(std::size_t light, float probability, const Vertex& v
   // light's own.
   const bool occluded =
       sample.infinite
-          ? accel_.occluded(origin, sample.direction, std::numeric_limits<float>::infinity())
-          : accel_.occluded(origin, sample.target - origin, 1 - 0x1p-17f);
+          ? accel_.occluded(origin, sample.direction, kEndless, v.surface.time)
+          : accel_.occluded(origin, sample.target - origin, 1 - 0x1p-17f, v.surface.time);
   if (occluded) return {0, 0, 0};
   if (light < lights_.count()) visibility |= 1u << (light % kEveryLight);
 
@@ -166,7 +166,7 @@ bool Transport::go_on(const Vertex& v, const BsdfSample& sample, const Vec3& dir
   if (is_black(walk.throughput)) return false;
   walk.pdf = sample.pdf;
   walk.from = v.surface.position;
-  walk.ray = {v.surface.origin_toward(direction), normalize(direction)};
+  walk.ray = {v.surface.origin_toward(direction), normalize(direction), v.surface.time};
   return true;
 }
 
@@ -213,6 +213,7 @@ bool Transport::survives(Walk& walk, Sampler& sampler) const {
 void Transport::record_vertex(const Vertex& v, const Walk& walk, PathRecord& record) const {
   record.has_vertex = true;
   record.position = v.surface.position;
+  record.rest = v.surface.rest;
   record.normal = v.surface.normal;
   record.reflectance = v.bsdf.albedo();
   record.throughput = walk.throughput;
