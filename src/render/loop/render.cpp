@@ -190,8 +190,9 @@ void Loop::replay() {
   core::Progress progress("read back", settings_.quiet);
   Recorder& recorder = slabs_[0]->records;
   std::uint64_t path = first_pass_ * paths_a_pass_;
-  const std::uint64_t end =
-      std::min(reader.records(), (first_pass_ + settings_.passes) * paths_a_pass_);
+  // A file of one frame may have more passes than are asked for.
+  std::uint64_t end = reader.records();
+  if (settings_.frames) end = std::min(end, path + settings_.passes * paths_a_pass_);
   while (path < end) {
     for (std::size_t camera = 0; camera < views_.size(); ++camera) {
       const std::size_t pixels = views_[camera].pixels();
