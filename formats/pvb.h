@@ -127,6 +127,7 @@ typedef struct pvb_channel {
 #define PVB_FRAME {"frame", PVB_U32, 1, PVB_PLAIN}                  // of a sequence, from 0
 #define PVB_ALPHA {"alpha", PVB_F32, 1, PVB_PLAIN}                  // coverage: 0 background
 #define PVB_KIND {"kind", PVB_U8, 1, PVB_PLAIN}                     // 0 surface 1 curve 2 volume
+#define PVB_REST_POSITION {"rest_position", PVB_F32, 3, PVB_PLAIN}  // x_i at frame 0
 
 // Of the tables `vertices` and `photons`, what is not among those above. README.md, "Tables", has
 // the exact meaning of each there, and says which are required.

@@ -133,7 +133,8 @@ OPTIONAL_CHANNELS = (Channel("unfiltered", "f32", 3), Channel("flags", "u8"),
                      Channel("hit_distance", "f32"), Channel("direction", "f32", 3),
                      Channel("material", "u32"), Channel("roughness", "f32"),
                      Channel("film", "f32", 2), Channel("lens", "f32", 2), Channel("time", "f32"),
-                     Channel("frame", "u32"), Channel("alpha", "f32"), Channel("kind", "u8"))
+                     Channel("frame", "u32"), Channel("alpha", "f32"), Channel("kind", "u8"),
+                     Channel("rest_position", "f32", 3))
 
 
 STANDARD = {  # the required channels of a table, and the others

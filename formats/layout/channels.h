@@ -19,7 +19,7 @@ struct ChannelInfo {
   std::string_view symbol;  // of path space filtering, "" where it has none
 };
 
-inline constexpr std::array<ChannelInfo, 21> kChannels = {{
+inline constexpr std::array<ChannelInfo, 22> kChannels = {{
     {"position", Type::f32, 3, true, "world", "x_i"},
     {"throughput", Type::f32, 3, true, "", "alpha_i"},
     {"contribution", Type::f32, 3, true, "radiance", "c_i"},
@@ -41,6 +41,7 @@ inline constexpr std::array<ChannelInfo, 21> kChannels = {{
     {"frame", Type::u32, 1, false, "", ""},
     {"alpha", Type::f32, 1, false, "", ""},
     {"kind", Type::u8, 1, false, "", ""},
+    {"rest_position", Type::f32, 3, false, "world", ""},
 }};
 
 // The row of a channel; null where the name means nothing to version 1.

@@ -96,6 +96,49 @@ OrderedJson camera_json(const CameraInfo& camera) {
           {"projection", camera.projection}};
 }
 
+OrderedJson frames_json(const FrameInfo& frames) {
+  OrderedJson json = {{"first", frames.first}, {"count", frames.count}, {"passes", frames.passes}};
+  if (frames.cameras.empty()) return json;
+  OrderedJson all = OrderedJson::array();
+  for (const std::vector<CameraInfo>& cameras : frames.cameras) {
+    OrderedJson of_frame = OrderedJson::array();
+    for (const CameraInfo& camera : cameras) {
+      OrderedJson entry = camera_json(camera);
+      for (const char* same : {"name", "width", "height"}) entry.erase(same);
+      of_frame.push_back(std::move(entry));
+    }
+    all.push_back(std::move(of_frame));
+  }
+  json["cameras"] = std::move(all);
+  return json;
+}
+
+// `cameras`: those of the file.
+void read_frames(const Place& place, const std::vector<CameraInfo>& cameras, FrameInfo& out) {
+  if (!place.value.is_object()) place.fail("an object");
+  read_key(place, "first", out.first);
+  read_key(place, "count", out.count);
+  read_key(place, "passes", out.passes);
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 32;
+  if (out.count == 0 || out.passes == 0 || out.passes >= kMost ||
+      out.first + std::uint64_t{out.count} > kMost) {
+    place.fail("a \"count\" and \"passes\" of at least 1, and frames and passes below 2^32");
+  }
+  read_key(place, "cameras", out.cameras);
+  if (out.cameras.empty()) return;
+  const Place all{place.value.at("cameras"), place.pointer + "/cameras"};
+  if (out.cameras.size() != out.count) all.fail("an entry for each frame");
+  for (std::size_t k = 0; k < out.cameras.size(); ++k) {
+    if (out.cameras[k].size() != cameras.size()) all.element(k).fail("all cameras of the file");
+    for (std::size_t c = 0; c < cameras.size(); ++c) {
+      CameraInfo& camera = out.cameras[k][c];
+      camera.name = cameras[c].name;
+      camera.width = cameras[c].width;
+      camera.height = cameras[c].height;
+    }
+  }
+}
+
 // Before parsing: the parser's own callback takes quadratic time.
 void check_depth(const std::string& json) {
   int depth = 0;
@@ -137,6 +180,7 @@ std::string to_json(const Metadata& metadata) {
                       {"cameras", std::move(cameras)},
                       {"lights", metadata.lights}};
   if (!metadata.materials.empty()) json["materials"] = metadata.materials;
+  if (metadata.frames) json["frames"] = frames_json(*metadata.frames);
   if (metadata.shade_rate > 1) json["shade_rate"] = metadata.shade_rate;
   // A name that is not UTF-8 (a file name may be any bytes) is stored with U+FFFD in it.
   return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
@@ -166,6 +210,9 @@ Metadata parse_metadata(const std::string& json) {
   read_key(place, "cameras", out.cameras);
   read_key(place, "lights", out.lights);
   read_key(place, "materials", out.materials);
+  if (const auto found = root.find("frames"); found != root.end()) {
+    read_frames({*found, "/frames"}, out.cameras, out.frames.emplace());
+  }
   return out;
 }
 

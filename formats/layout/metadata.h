@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,15 @@ struct CameraInfo {
       camera_to_world{};                // row-major, column vectors; camera looks along -z, y up
   std::array<double, 16> projection{};  // camera space to clip space, row-major, column vectors
   bool operator==(const CameraInfo&) const = default;
+};
+
+// The frames of a sequence: pass p of the file is of frame first + p / passes, rounded down.
+struct FrameInfo {
+  std::uint32_t first = 0, count = 1;
+  std::uint64_t passes = 1;  // of each frame
+  // By frame, in the order of Metadata::cameras; empty: the cameras are those at all frames. Names
+  // and sizes are the same at all of them.
+  std::vector<std::vector<CameraInfo>> cameras;
 };
 
 struct Metadata {
@@ -39,6 +49,7 @@ struct Metadata {
   std::vector<std::string> lights;  // light l owns bit l mod 32 of the channel `visibility`
   // Names; index = value of the channel `material`.
   std::vector<std::string> materials;
+  std::optional<FrameInfo> frames;  // where the file has frames
 };
 
 [[nodiscard]] std::string to_json(const Metadata& metadata);

@@ -102,7 +102,22 @@ void check_joined(const Reader& reader, const Reader& first) {
   for (const auto& item : before.items()) compare(item.key());
 }
 
+// A file of several frames tells by its passes which are of which.
+void check_frames(std::span<const JoinedInput> inputs) {
+  for (const JoinedInput& input : inputs) {
+    const auto frames = parse_metadata(input.reader.head().metadata).frames;
+    if (!frames || frames->count == 1 || (inputs.size() == 1 && input.first == 0)) continue;
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("{}: has the frames {}:{}: they cannot be joined with others, nor cut at "
+                    "the begin; render a file a frame, by #### in its name",
+                    input.reader.path(), frames->first,
+                    frames->first + std::uint64_t{frames->count}));
+  }
+}
+
 std::string joined_metadata(std::span<const JoinedInput> inputs) {
+  check_frames(inputs);
   Json metadata = metadata_of(inputs.front().reader);
   if (inputs.size() == 1) return inputs.front().reader.head().metadata;
   Json joined = Json::array();

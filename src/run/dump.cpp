@@ -69,10 +69,15 @@ void make_finite(std::vector<float>& coverage, std::uint64_t& not_finite) {
 
 }  // namespace
 
-Dump::Dump(const std::string& path, const std::optional<VertexRule>& rule)
+Dump::Dump(const std::string& path, const std::optional<VertexRule>& rule,
+           std::optional<std::uint32_t> frame)
     : reader_(std::make_shared<formats::Reader>(path)),
       metadata_(metadata_of(*reader_)),
       rule_(rule) {
+  if (frame && metadata_.frames && *frame >= metadata_.frames->first) {
+    const std::size_t k = *frame - metadata_.frames->first;
+    if (k < metadata_.frames->cameras.size()) metadata_.cameras = metadata_.frames->cameras[k];
+  }
   if (rule_) static_cast<void>(VertexCut(*reader_, *rule_, metadata_.shade_rate));
   if (metadata_.cameras.empty()) {
     throw Error(ErrorCode::bad_input,

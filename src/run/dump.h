@@ -33,7 +33,9 @@ class Dump {
   // Throws what formats::Reader throws; Error{bad_input} where there is no committed pass or no
   // camera. With a rule for the vertex also what VertexCut throws: x_i is then another vertex of each
   // path. Without one x_i is what the file says.
-  explicit Dump(const std::string& path, const std::optional<VertexRule>& rule = {});
+  // The cameras are those at `frame`, where the file tells of it.
+  explicit Dump(const std::string& path, const std::optional<VertexRule>& rule = {},
+                std::optional<std::uint32_t> frame = {});
 
   // The same file, which stays open as long as one of the two, with another choice of x_i; none:
   // what the file says. Throws what VertexCut throws. What is refreshed is the one that refresh() is

@@ -15,7 +15,35 @@ std::size_t last_pass(const Dump& dump, const PassSelection& selection) {
     throw Error(ErrorCode::usage, fmt::format("{}: has passes 0:{}, {}:{} is no part of them",
                                               dump.reader().path(), passes, selection.first, last));
   }
+  const auto& frames = dump.metadata().frames;
+  if (frames && frames->count > 1 &&
+      selection.first / frames->passes != (last - 1) / frames->passes) {
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: has the frames {}:{}, {}:{} is of several, which would be mixed; "
+                            "choose one by --frame, or {} passes from 0, {}, ... on by --passes",
+                            dump.reader().path(), frames->first,
+                            frames->first + std::uint64_t{frames->count}, selection.first, last,
+                            frames->passes, frames->passes));
+  }
   return last;
+}
+
+PassSelection passes_of_frame(const Dump& dump, std::uint32_t frame) {
+  const auto& frames = dump.metadata().frames;
+  const std::string& path = dump.reader().path();
+  if (!frames) throw Error(ErrorCode::usage, path + ": tells of no frames; leave out --frame");
+  if (frame < frames->first || frame - frames->first >= frames->count) {
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: has the frames {}:{}, {} is none of them", path, frames->first,
+                            frames->first + std::uint64_t{frames->count}, frame));
+  }
+  const std::size_t passes = dump.pass_bounds().size() - 1;
+  const std::size_t first = (frame - frames->first) * frames->passes;
+  if (first >= passes) {
+    throw Error(ErrorCode::usage, fmt::format("{}: has no pass of frame {} yet", path, frame));
+  }
+  if (frames->count == 1) return {0, std::nullopt};
+  return {first, std::min<std::size_t>(first + frames->passes, passes)};
 }
 
 filter::Block describe_block(const Dump& dump, const filter::Blocks& blocks, std::uint64_t k,

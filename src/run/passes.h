@@ -17,9 +17,12 @@ struct PassSelection {
   std::optional<std::size_t> last;
 };
 
-// The end of the selection. Throws Error{usage} where it is empty or has passes that the dump does
-// not have.
+// The end of the selection. Throws Error{usage} where it is empty, has passes that the dump does not
+// have, or passes of several frames, which are several pictures.
 [[nodiscard]] std::size_t last_pass(const Dump& dump, const PassSelection& selection);
+
+// The passes of a frame, as far as the dump has them. Throws Error{usage} where it has none.
+[[nodiscard]] PassSelection passes_of_frame(const Dump& dump, std::uint32_t frame);
 
 // Describes block k of `blocks`; n of [radius] counts what `count` says.
 [[nodiscard]] filter::Block describe_block(const Dump& dump, const filter::Blocks& blocks,

@@ -68,6 +68,28 @@ TEST_CASE("metadata survives JSON exactly") {
   CHECK(to_json(Metadata{}).find("materials") == std::string::npos);
 }
 
+TEST_CASE("the frames of a sequence and their cameras survive JSON, and what is wrong is named") {
+  Metadata in;
+  in.cameras = {{"left", 64, 48, 0.25, {}, {}}, {"right", 32, 16, 0.5, {}, {}}};
+  CHECK(to_json(in).find("frames") == std::string::npos);
+  in.frames = FrameInfo{7, 2, 5, {in.cameras, in.cameras}};
+  in.frames->cameras[1][0].angle_per_pixel = 0.125;
+  in.frames->cameras[1][1].camera_to_world[3] = 1.0 / 3;
+  const Metadata out = parse_metadata(to_json(in));
+  REQUIRE(out.frames.has_value());
+  CHECK((out.frames->first == 7 && out.frames->count == 2 && out.frames->passes == 5));
+  CHECK(out.frames->cameras == in.frames->cameras);
+
+  CHECK(complaint(R"({"frames": 3})").find("/frames: expected an object") != std::string::npos);
+  CHECK(complaint(R"({"frames": {"count": 0}})").find("at least 1") != std::string::npos);
+  CHECK(complaint(R"({"frames": {"first": 4294967295, "count": 2}})").find("below 2^32") !=
+        std::string::npos);
+  CHECK(complaint(R"({"frames": {"count": 2, "cameras": [[]]}})")
+            .find("/frames/cameras: expected an entry for each frame") != std::string::npos);
+  CHECK(complaint(R"({"frames": {"cameras": [[{}]]}})")
+            .find("/frames/cameras/0: expected all cameras of the file") != std::string::npos);
+}
+
 TEST_CASE("unknown metadata keys are ignored and missing ones keep their defaults") {
   const Metadata out = parse_metadata(R"({"new":{"deep":[1,2]},"split":4,"cameras":[{"x":1}]})");
   CHECK(out.split == 4);

@@ -178,7 +178,7 @@ TEST_CASE("Channels on request leave the others as they are, for any number of t
   settings.channels = {"default", "alpha"};
   CHECK(columns_of(scene, settings).size() == 16);
   const Columns all = columns_of(scene, with_all(2));
-  CHECK(all.size() == 21);
+  CHECK(all.size() == 22);
   for (const auto& [name, bytes] : plain) CHECK(all.at(name) == bytes);
   const core::ThreadLimit one(1);
   CHECK(columns_of(scene, with_all(2)) == all);

@@ -48,7 +48,7 @@ TEST_CASE("the default channels, or the ones asked for beside those that every f
   CHECK(names(record_channels(set)) == names(record_channels()));
   CHECK(record_channels(more).size() == 16);
   CHECK(record_channels(more).back().name == "alpha");
-  CHECK(record_channels(all).size() == 21);
+  CHECK(record_channels(all).size() == 22);
   const std::vector<std::string> unknown{"normals"};
   CHECK_THROWS_AS(record_channels(unknown), Error);
 }
@@ -78,12 +78,14 @@ TEST_CASE("columns hold what was set, non-finite values included") {
 }
 
 TEST_CASE("columns on request hold what was set, and take no room otherwise") {
-  const std::vector<std::string> wanted{"film", "lens", "time", "frame", "alpha", "kind"};
+  const std::vector<std::string> wanted{"film",  "lens", "time",         "frame",
+                                        "alpha", "kind", "rest_position"};
   const auto channels = record_channels(wanted);
   Recorder recorder(2, {}, channels);
   PathRecord record;
   record.coverage = 0.25f;
   record.kind = VertexKind::volume;
+  record.rest = Vec3(1, 2, 3);
   recorder.set(1, 0, 0, record);
   recorder.set_sample(1, {{1.5f, 2.5f}, {-0.5f, 0.75f}, 0.125f, 42});
   const auto columns = recorder.columns(channels);
@@ -99,6 +101,7 @@ TEST_CASE("columns on request hold what was set, and take no room otherwise") {
   CHECK(at("frame", 1, 0u) == 42);
   CHECK(at("alpha", 1, 0.0f) == 0.25f);
   CHECK(at("kind", 1, std::uint8_t{0}) == 2);
+  CHECK(at("rest_position", 1, Vec3()) == Vec3(1, 2, 3));
   Recorder plain(2);
   plain.set(1, 0, 0, record);
   plain.set_sample(1, {});

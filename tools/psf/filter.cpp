@@ -161,12 +161,13 @@ void run(const FilterOptions& options) {
   run.parameters = filter::parameters_of(chosen);
   run.parameters.count_refusals = options.refusals;
   run.parameters.validate();
-  run.passes = parse_passes(options.passes);
   run.layers = layers_of(options.layers);
   run.max_memory = options.max_memory;
   run.with_noise = !options.common.json.empty();
   if (options.follow) wait_for_first_pass(options.input);
-  run::Dump dump = open_dump(options.input, chosen.vertex);
+  run::Dump dump = open_dump(options.input, chosen.vertex, options.frame);
+  run.passes =
+      options.frame ? run::passes_of_frame(dump, *options.frame) : parse_passes(options.passes);
   std::vector<std::string> notes;
   fit_terms(dump, {&run.parameters, 1}, filter::asked_terms(chosen.given), notes);
   check_layers(dump, options.layers, run.layers);

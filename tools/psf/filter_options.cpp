@@ -149,6 +149,10 @@ void add_filter_options(CLI::App& command, FilterOptions& options) {
                 "of a dump that is being written: a new picture whenever a pass is committed, "
                 "until it is closed")
       ->excludes("--snapshots");
+  command.add_option("--frame", options.frame, "of a dump of several frames: only this one")
+      ->excludes("--passes")
+      ->excludes("--follow")
+      ->type_name("N");
   add_common(command, options.common);
 }
 

@@ -21,8 +21,9 @@ struct FilterOptions : filter::ParameterTexts {
   std::string vertex;  // rule as written; empty: the vertex of the file
   std::vector<std::string> outputs;
   std::string passes, snapshots;  // as written; empty: all passes, no snapshots
-  std::string layers = "all";     // layers of EXRs, as written
-  std::string tuned;              // file of psf tune that gives the parameters; empty: none
+  std::optional<std::uint32_t> frame;
+  std::string layers = "all";  // layers of EXRs, as written
+  std::string tuned;           // file of psf tune that gives the parameters; empty: none
   bool refusals = false, follow = false;
   std::optional<std::uint64_t> max_memory;  // bytes
 };

@@ -106,6 +106,13 @@ void print_overview(const formats::Reader& reader, const formats::Metadata& meta
   line("records",
        fmt::format("{} in {}, {} chunk{}", grouped(reader.records()), passes_text(reader),
                    grouped(reader.chunks().size()), reader.chunks().size() == 1 ? "" : "s"));
+  if (metadata.frames) {
+    const formats::FrameInfo& frames = *metadata.frames;
+    line("frames", fmt::format("{}:{}, {} {} each{}", frames.first,
+                               frames.first + std::uint64_t{frames.count}, frames.passes,
+                               frames.passes == 1 ? "pass" : "passes",
+                               frames.cameras.empty() ? "" : ", cameras that move"));
+  }
   line("file", bytes(reader.file_bytes()) + (reader.uncommitted_bytes() == 0
                                                  ? ""
                                                  : fmt::format(", of which {} are not committed",
@@ -191,7 +198,8 @@ Noise read_noise(const std::string& path) {
     const run::Dump dump(path);
     return {run::noise_shares(dump, {}), ""};
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::bad_input) throw;
+    // Usage: of several frames.
+    if (error.code() != ErrorCode::bad_input && error.code() != ErrorCode::usage) throw;
     return {{}, error.what()};
   }
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "run/dump.h"
@@ -18,8 +20,10 @@ inline void add_vertex(CLI::App& command, std::string& vertex) {
 }
 
 // `vertex`: as written; empty: the vertex of the file.
-[[nodiscard]] inline run::Dump open_dump(const std::string& path, const std::string& vertex) {
-  return run::Dump(path, run::vertex_rule_of(vertex));
+// `frame`: of a sequence, whose cameras are taken; none: those of the file.
+[[nodiscard]] inline run::Dump open_dump(const std::string& path, const std::string& vertex,
+                                         std::optional<std::uint32_t> frame = {}) {
+  return run::Dump(path, run::vertex_rule_of(vertex), frame);
 }
 
 }  // namespace psf::tools

@@ -59,7 +59,14 @@ void Accel::add_mesh(const Mesh& mesh, unsigned id) {
   const EmbreeGeometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
   const std::size_t count = mesh.positions.size();
   // Embree reads 16 bytes at each 12-byte position, so the last one needs room behind it.
-  if (mesh.positions.capacity() > count) {
+  if (!mesh.motion.empty()) {
+    rtcSetGeometryTimeStepCount(geometry.get(), static_cast<unsigned>(mesh.motion.size()));
+    for (unsigned step = 0; step < mesh.motion.size(); ++step) {
+      auto* copy = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
+          geometry.get(), RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3, sizeof(Vec3), count));
+      if (copy != nullptr) std::ranges::copy(mesh.motion[step].positions, copy);
+    }
+  } else if (mesh.positions.capacity() > count) {
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                mesh.positions.data(), 0, sizeof(Vec3), count);
   } else {
@@ -77,11 +84,23 @@ void Accel::add_mesh(const Mesh& mesh, unsigned id) {
 
 void Accel::add_spheres(const std::vector<Sphere>& spheres, unsigned id) {
   if (spheres.empty()) return;
-  points_.reserve(spheres.size());
-  for (const Sphere& s : spheres) points_.push_back({s.center.x, s.center.y, s.center.z, s.radius});
+  // Spheres are one geometry: where one moves, all have its number of steps.
+  std::size_t steps = 1;
+  for (const Sphere& s : spheres) steps = std::max(steps, s.motion.size());
+  points_.reserve(spheres.size() * steps);
+  for (std::size_t step = 0; step < steps; ++step) {
+    for (const Sphere& s : spheres) {
+      const Ball ball = s.motion.empty() ? Ball{s.center, s.radius} : s.motion[step];
+      points_.push_back({ball.center.x, ball.center.y, ball.center.z, ball.radius});
+    }
+  }
   const EmbreeGeometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_SPHERE_POINT));
-  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
-                             points_.data(), 0, sizeof(Point), points_.size());
+  rtcSetGeometryTimeStepCount(geometry.get(), static_cast<unsigned>(steps));
+  for (std::size_t step = 0; step < steps; ++step) {
+    rtcSetSharedGeometryBuffer(
+        geometry.get(), RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(step), RTC_FORMAT_FLOAT4,
+        points_.data(), step * spheres.size() * sizeof(Point), sizeof(Point), spheres.size());
+  }
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometryByID(scene_.get(), geometry.get(), id);
   check_embree(device_.get(), "spheres");

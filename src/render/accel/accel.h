@@ -28,12 +28,12 @@ class Accel {
   explicit Accel(const Scene& scene);
 
   // Finds the nearest hit at a distance in (beyond, reach]; returns false where there is none.
-  // `direction` is a unit vector.
+  // `direction` is a unit vector; `time` in [0, 1] is of Scene::shutter.
   [[nodiscard]] bool intersect(const Vec3& origin, const Vec3& direction, Hit& hit,
-                               float reach = std::numeric_limits<float>::infinity(),
+                               float reach = std::numeric_limits<float>::infinity(), float time = 0,
                                float beyond = 0) const {
     RTCRayHit query;
-    set_ray(query.ray, origin, direction, reach);
+    set_ray(query.ray, origin, direction, reach, time);
     query.ray.tnear = beyond;
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -46,9 +46,10 @@ class Accel {
 
   // Whether any surface lies at origin + t * direction for t in (0, reach]. `direction` may have
   // any length.
-  [[nodiscard]] bool occluded(const Vec3& origin, const Vec3& direction, float reach) const {
+  [[nodiscard]] bool occluded(const Vec3& origin, const Vec3& direction, float reach,
+                              float time = 0) const {
     RTCRay ray;
-    set_ray(ray, origin, direction, reach);
+    set_ray(ray, origin, direction, reach, time);
     embree_occluded(scene_.get(), ray);
     return ray.tfar < 0;
   }
@@ -58,7 +59,8 @@ class Accel {
   [[nodiscard]] float radius() const { return radius_; }
 
  private:
-  static void set_ray(RTCRay& ray, const Vec3& origin, const Vec3& direction, float reach) {
+  static void set_ray(RTCRay& ray, const Vec3& origin, const Vec3& direction, float reach,
+                      float time) {
     ray.org_x = origin.x;
     ray.org_y = origin.y;
     ray.org_z = origin.z;
@@ -66,7 +68,7 @@ class Accel {
     ray.dir_x = direction.x;
     ray.dir_y = direction.y;
     ray.dir_z = direction.z;
-    ray.time = 0;
+    ray.time = time;
     ray.tfar = reach;
     ray.mask = ~0u;
     ray.id = 0;

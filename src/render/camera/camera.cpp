@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "render/scene/motion.h"
 
 namespace psf::render {
 namespace {
@@ -43,48 +44,67 @@ CameraRays::CameraRays(const Camera& camera)
     : name_(camera.name),
       width_(camera.width),
       height_(camera.height),
-      eye_(camera.eye),
       lens_radius_(camera.lens_radius),
-      focus_distance_(camera.focus_distance) {
+      motion_(camera.motion) {
   validate(camera);
-  back_ = (camera.eye - camera.target).normalized();
-  right_ = cross(camera.up, back_);
-  if (!(length_sq(right_) > 1e-10f * length_sq(camera.up))) {
+  const Vec3 right = cross(camera.up, (camera.eye - camera.target).normalized());
+  if (!(length_sq(right) > 1e-10f * length_sq(camera.up))) {
     fail(camera, "up points along the view direction, choose another");
   }
-  right_.normalize();
-  up_ = cross(back_, right_);
-  scale_x_ = std::tan(camera.fov / 2);
-  scale_y_ = scale_x_ * static_cast<float>(height_) / static_cast<float>(width_);
+  view_ = view_of(camera.pose());
 }
 
-Ray CameraRays::ray(const Vec2& pixel, const Vec2& lens) const {
-  const float x = (2 * pixel.x / static_cast<float>(width_) - 1) * scale_x_;
-  const float y = (1 - 2 * pixel.y / static_cast<float>(height_)) * scale_y_;
-  const Vec3 toward = right_ * x + up_ * y - back_;
-  if (!has_lens()) return {eye_, toward.normalized()};
+CameraRays::View CameraRays::view_of(const CameraPose& pose) const {
+  View view;
+  view.eye = pose.eye;
+  view.back = (pose.eye - pose.target).normalized();
+  view.right = cross(pose.up, view.back);
+  view.right.normalize();
+  view.up = cross(view.back, view.right);
+  view.scale_x = std::tan(pose.fov / 2);
+  view.scale_y = view.scale_x * static_cast<float>(height_) / static_cast<float>(width_);
+  view.focus_distance = pose.focus_distance;
+  return view;
+}
+
+Ray CameraRays::ray(const Vec2& pixel, const Vec2& lens, float time) const {
+  View view = view_;
+  if (!motion_.empty()) {
+    const auto [step, share] = step_at(motion_.size(), time);
+    view = view_of(mix(motion_[step], motion_[step + 1], share));
+  }
+  Ray ray = ray_of(view, pixel, lens);
+  ray.time = time;
+  return ray;
+}
+
+Ray CameraRays::ray_of(const View& view, const Vec2& pixel, const Vec2& lens) const {
+  const float x = (2 * pixel.x / static_cast<float>(width_) - 1) * view.scale_x;
+  const float y = (1 - 2 * pixel.y / static_cast<float>(height_)) * view.scale_y;
+  const Vec3 toward = view.right * x + view.up * y - view.back;
+  if (!has_lens()) return {view.eye, toward.normalized()};
   const Vec2 disk = concentric_disk(lens) * lens_radius_;
-  const Vec3 offset = right_ * disk.x + up_ * disk.y;
-  return {eye_ + offset, (toward * focus_distance_ - offset).normalized()};
+  const Vec3 offset = view.right * disk.x + view.up * disk.y;
+  return {view.eye + offset, (toward * view.focus_distance - offset).normalized()};
 }
 
 formats::CameraInfo CameraRays::info(const Space& space) const {
-  const Imath::V3d eye = space.world(eye_);
+  const Imath::V3d eye = space.world(view_.eye);
   formats::CameraInfo info;
   info.name = name_;
   info.width = width_;
   info.height = height_;
-  info.angle_per_pixel = 2 * std::atan(double{scale_x_} / width_);
+  info.angle_per_pixel = 2 * std::atan(double{view_.scale_x} / width_);
   for (int k = 0; k < 3; ++k) {
     const auto row = static_cast<std::size_t>(4 * k);
-    info.camera_to_world[row] = double{right_[k]};
-    info.camera_to_world[row + 1] = double{up_[k]};
-    info.camera_to_world[row + 2] = double{back_[k]};
+    info.camera_to_world[row] = double{view_.right[k]};
+    info.camera_to_world[row + 1] = double{view_.up[k]};
+    info.camera_to_world[row + 2] = double{view_.back[k]};
     info.camera_to_world[row + 3] = eye[k];
   }
   info.camera_to_world[15] = 1;
-  info.projection[0] = 1 / double{scale_x_};
-  info.projection[5] = 1 / double{scale_y_};
+  info.projection[0] = 1 / double{view_.scale_x};
+  info.projection[5] = 1 / double{view_.scale_y};
   info.projection[10] = -1;
   info.projection[11] = -2 * kNear;
   info.projection[14] = -1;

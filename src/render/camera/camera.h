@@ -7,7 +7,8 @@
 
 namespace psf::render {
 
-// A pinhole or thin-lens camera, prepared for rays. In camera space it looks along -z, with +y up
+// A pinhole or thin-lens camera, prepared for rays. It is described as it is at the frame, whatever
+// it does while the shutter is open. In camera space it looks along -z, with +y up
 // and +x to the right. The pixel (0, 0) is at the top left, so pixel y grows toward -y.
 class CameraRays {
  public:
@@ -16,8 +17,9 @@ class CameraRays {
   explicit CameraRays(const Camera& camera);
 
   // `pixel`: continuous, x in [0, width), y in [0, height), 0 at the top. `lens`: a point of the
-  // unit square, used where the lens has a radius. The direction is unit.
-  [[nodiscard]] Ray ray(const Vec2& pixel, const Vec2& lens) const;
+  // unit square, used where the lens has a radius. `time`: of Scene::shutter, where the camera
+  // moves. The direction is unit.
+  [[nodiscard]] Ray ray(const Vec2& pixel, const Vec2& lens, float time = 0) const;
   [[nodiscard]] bool has_lens() const { return lens_radius_ > 0; }
   // The description of the camera for the path-vertex buffer, in world units. `space` is the space
   // in which the camera is given. The projection has an infinite far plane. A position projects to
@@ -26,11 +28,20 @@ class CameraRays {
   [[nodiscard]] formats::CameraInfo info(const Space& space = {}) const;
 
  private:
+  // Where a camera looks.
+  struct View {
+    Vec3 eye, right, up, back;  // orthonormal; back points from the target to the eye
+    float scale_x, scale_y;     // half the picture at distance 1
+    float focus_distance;
+  };
+  [[nodiscard]] View view_of(const CameraPose& pose) const;
+  [[nodiscard]] Ray ray_of(const View& view, const Vec2& pixel, const Vec2& lens) const;
+
   std::string name_;
   std::uint32_t width_, height_;
-  Vec3 eye_, right_, up_, back_;  // orthonormal; back_ points from the target to the eye
-  float scale_x_, scale_y_;       // half the picture at distance 1
-  float lens_radius_, focus_distance_;
+  float lens_radius_;
+  View view_;
+  std::vector<CameraPose> motion_;
 };
 
 // Area-preserving map of the unit square to the unit disk (P. Shirley, K. Chiu, "A low distortion

@@ -17,6 +17,7 @@
 #include "film/attributes.h"
 #include "film/image.h"
 #include "film/picture_names.h"
+#include "render/job/frames.h"
 #include "render/loop/recorder.h"
 
 namespace psf::render {
@@ -75,6 +76,7 @@ film::Image make_image(const Job& job, const Scene& scene, const Camera& camera,
     add("photon-radius", fmt::format("{}", i.photon_radius));
     add("photon-delta", fmt::format("{}", i.photon_delta));
   }
+  if (settings.frames) add("frame", fmt::format("{}", scene.moment.frame));
   film::add_picture(image.attributes, camera.name, 0, passes);
   return image;
 }
@@ -110,8 +112,8 @@ formats::Writer open_writer(const Job& job, const formats::Head& head) {
   const std::string path = core::followed(job.output);
   if (!job.resume || !std::filesystem::exists(path)) return {path, head, options};
   formats::Writer writer = formats::Writer::resume(path, head, options);
-  note(job,
-       fmt::format("{} has {} of {} passes", job.output, writer.passes(), job.settings.passes));
+  note(job, fmt::format("{} has {} of {} passes", job.output, writer.passes(),
+                        job.settings.total_passes()));
   return writer;
 }
 
@@ -138,42 +140,121 @@ void check_names(const Job& job) {
   }
   for (const std::string& image : job.images) film::check_image_path(image);
   static_cast<void>(record_channels(job.settings.channels));
+  if (job.settings.frames) check_frame_names(job);
+}
+
+// The scene at a frame of the job, with its integrator.
+struct Shot {
+  Shot(const Job& job, std::uint32_t frame)
+      : scene(load_scene(job.scene, job.overrides, {static_cast<double>(frame), job.fps},
+                         has_channel(job.settings.channels, kRestPosition))),
+        integrator(make_integrator(scene, job.settings.integrator)) {}
+  Scene scene;
+  std::unique_ptr<const Integrator> integrator;
+};
+
+// A job whose files are checked: shot by shot, of which one file or none gets all.
+class Run {
+ public:
+  explicit Run(const Job& job) : job_(job), range_(job.settings.frame_range()) {}
+  JobResult run();
+
+ private:
+  void begin(const Shot& first);
+  void shoot(std::uint32_t index, const Shot& shot);
+  [[nodiscard]] film::PictureNames names(std::uint32_t index) const;
+
+  Job job_;
+  FrameRange range_;
+  core::Clock::time_point start_ = core::Clock::now();
+  std::vector<std::size_t> cameras_;
+  std::vector<std::string> camera_names_;
+  formats::Head head_;
+  std::optional<formats::Writer> writer_;
+  JobResult result_;
+};
+
+film::PictureNames Run::names(std::uint32_t index) const {
+  std::vector<std::string> images = job_.images;
+  if (job_.settings.frames) {
+    for (std::string& image : images) image = numbered(image, range_.first + index);
+  }
+  return {images, camera_names_};
+}
+
+// Settles what all frames share, and opens the file.
+void Run::begin(const Shot& first) {
+  RenderSettings& settings = job_.settings;
+  const Scene& scene = first.scene;
+  settings.producer = "psf-render " + job_.version;
+  settings.cameras = select_cameras(scene, job_.cameras);
+  settings.validate(scene);
+  settings.replay = !job_.images.empty();
+  cameras_ = chosen_cameras(scene, settings);
+  for (const std::size_t camera : cameras_) camera_names_.push_back(scene.cameras[camera].name);
+  std::vector<std::string> pictures;
+  for (std::uint32_t k = 0; k < range_.count && !job_.images.empty(); ++k) {
+    const std::vector<std::string> of_frame = names(k).all({});
+    pictures.insert(pictures.end(), of_frame.begin(), of_frame.end());
+  }
+  check_all_files(job_, scene.files, pictures);
+  if (job_.output.empty()) return;
+  check_digits(job_, scene);
+  std::vector<std::vector<Camera>> cameras;
+  for (std::uint32_t k = 0; k < range_.count && range_.count > 1; ++k) {
+    cameras.push_back(
+        cameras_at(job_.scene, job_.overrides, scene, static_cast<double>(range_.first + k)));
+  }
+  head_ = make_head(scene, *first.integrator, settings, cameras);
+  writer_.emplace(open_writer(job_, head_));
+}
+
+void Run::shoot(std::uint32_t index, const Shot& shot) {
+  const bool is_first = result_.render.films.empty();
+  const RenderResult before = std::move(result_.render);
+  result_.render =
+      render(shot.scene, *shot.integrator, job_.settings, writer_ ? &*writer_ : nullptr,
+             {index, &head_, is_first ? nullptr : &before});
+  const std::vector<std::string> images =
+      write_images(job_, shot.scene, cameras_, names(index), result_.render);
+  result_.images.insert(result_.images.end(), images.begin(), images.end());
+}
+
+JobResult Run::run() {
+  auto shot = std::make_unique<const Shot>(job_, range_.first);
+  begin(*shot);
+  for (const std::string& warning : shot->scene.warnings) note(job_, warning);
+  result_.scene = shot->scene.name;
+  result_.prepare_seconds = core::seconds_since(start_);
+  core::throw_if_interrupted("nothing was rendered, nothing is written");
+  // Frames that the file has are looked at again only for their pictures.
+  std::uint32_t index = 0;
+  if (writer_ && job_.images.empty()) {
+    const std::uint64_t whole = writer_->passes() / job_.settings.passes;
+    index = static_cast<std::uint32_t>(std::min<std::uint64_t>(whole, range_.count - 1));
+  }
+  const core::Clock::time_point started = core::Clock::now();
+  const double time_limit = job_.settings.time_limit;
+  for (; index < range_.count; ++index) {
+    if (index > 0) {
+      shot.reset();  // two scenes at once may be too many
+      shot = std::make_unique<const Shot>(job_, range_.first + index);
+    }
+    job_.settings.time_limit = time_limit - core::seconds_since(started);
+    shoot(index, *shot);
+    if (result_.render.interrupted || result_.render.out_of_time) break;
+  }
+  if (writer_) result_.bytes = writer_->bytes_written();
+  return std::move(result_);
 }
 
 }  // namespace
 
-JobResult run_job(const Job& asked) {
-  check_names(asked);
-  check_all_files(asked, {}, asked.images);  // what can be said before anything is loaded
-  const core::Clock::time_point start = core::Clock::now();
-  Job job = asked;
-  const Scene scene = load_scene(job.scene, job.overrides);
-  RenderSettings& settings = job.settings;
-  settings.producer = "psf-render " + job.version;
-  settings.cameras = select_cameras(scene, job.cameras);
-  settings.validate(scene);
-  const auto integrator = make_integrator(scene, settings.integrator);
-  settings.replay = !job.images.empty();
-  std::optional<formats::Writer> writer;
-  const std::vector<std::size_t> cameras = chosen_cameras(scene, settings);
-  std::vector<std::string> camera_names;
-  camera_names.reserve(cameras.size());
-  for (const std::size_t camera : cameras) camera_names.push_back(scene.cameras[camera].name);
-  const film::PictureNames names(job.images, camera_names);
-  check_all_files(job, scene.files, names.all({}));
-  if (!job.output.empty()) {
-    check_digits(job, scene);
-    writer.emplace(open_writer(job, make_head(scene, *integrator, settings)));
-  }
-  for (const std::string& warning : scene.warnings) note(job, warning);
-  JobResult result;
-  result.scene = scene.name;
-  result.prepare_seconds = core::seconds_since(start);
-  core::throw_if_interrupted("nothing was rendered, nothing is written");
-  result.render = render(scene, *integrator, settings, writer ? &*writer : nullptr);
-  result.images = write_images(job, scene, cameras, names, result.render);
-  if (writer) result.bytes = writer->bytes_written();
-  return result;
+JobResult run_job(const Job& job) {
+  check_names(job);
+  if (job.settings.frames && is_numbered(job.output)) return run_apart(job);
+  check_all_files(job, {}, job.images);  // what can be said before anything is loaded
+  return Run(with_frame_channel(job)).run();
 }
 
 double JobResult::rays_per_second() const {
@@ -185,8 +266,8 @@ void throw_if_stopped(const Job& job, const JobResult& result) {
   const std::string kept = result.bytes ? job.output + " keeps" : "the pictures keep";
   throw Error(ErrorCode::interrupted,
               fmt::format("interrupted after pass {} of {}: {} all {} paths of them{}",
-                          result.render.passes, job.settings.passes, kept, result.render.paths,
-                          result.bytes ? "; `resume` goes on" : ""));
+                          result.render.passes, job.settings.total_passes(), kept,
+                          result.render.paths, result.bytes ? "; `resume` goes on" : ""));
 }
 
 std::string figures(const Job& job, const JobResult& result) {

@@ -22,6 +22,7 @@ struct Job {
   std::vector<std::string> cameras;        // names; empty: the first; "all"
   bool resume = false;                     // go on with `output` where it is there
   formats::Codec codec = formats::Codec::zstd;
+  double fps = 24;  // frames a second, for scenes that count in seconds
   SceneOverrides overrides;
   RenderSettings settings;  // its cameras and producer are set by run_job()
   std::string version;      // of psf
@@ -38,8 +39,9 @@ struct JobResult {
   [[nodiscard]] double rays_per_second() const;
 };
 
-// Renders, and writes dump and pictures; what ^C stopped is written as far as it came. Throws
-// Error{usage} for a camera that is not there, an output that is an input or another output, or a
+// Renders, and writes dump and pictures, of each frame where there are several: the dump gets one
+// frame after the other, or its name has #### for the number of the frame, and each gets a dump;
+// what ^C stopped is written as far as it came. Throws Error{usage} for a camera that is not there, an output that is an input or another output, or a
 // name that is none of a dump or a picture; Error{io} where a file cannot be written; Error{limit}
 // for a scene so far away that the dump's positions could not tell its vertices apart; and what
 // load_scene(), validate() and render() throw.

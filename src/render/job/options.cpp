@@ -24,6 +24,7 @@ constexpr const char* kScene = "Camera and light, over those of the scene";
 constexpr const char* kColour = "three numbers R,G,B of at least 0 or one for grey";
 constexpr std::uint32_t kMostLightPaths = 1u << 27;
 constexpr std::uint32_t kAllVertices = std::numeric_limits<std::uint16_t>::max();
+constexpr std::uint32_t kMostFrames = 1u << 24;
 constexpr float kLongest = std::numeric_limits<float>::max();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -57,6 +58,31 @@ bool parse_size(const std::string& text, std::optional<Vec2>& size) {
   const auto height = parse_number<std::uint16_t>(std::string_view(text).substr(x + 1));
   if (!width || !height || *width == 0 || *height == 0) return false;
   size.emplace(static_cast<float>(*width), static_cast<float>(*height));
+  return true;
+}
+
+// FIRST:LAST, or one frame.
+bool parse_frames(const std::string& text, std::optional<FrameRange>& frames) {
+  const std::size_t colon = text.find(':');
+  const auto first = parse_number<std::uint32_t>(std::string_view(text).substr(0, colon));
+  if (!first || *first >= kMostFrames) return false;
+  auto last = std::optional(*first + 1);
+  if (colon != std::string::npos) {
+    last = parse_number<std::uint32_t>(std::string_view(text).substr(colon + 1));
+  }
+  if (!last || *last <= *first || *last > kMostFrames) return false;
+  frames = FrameRange{*first, *last - *first};
+  return true;
+}
+
+// OPEN:CLOSE
+bool parse_shutter(const std::string& text, std::optional<Shutter>& shutter) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) return false;
+  const auto open = parse_number<float>(std::string_view(text).substr(0, colon));
+  const auto close = parse_number<float>(std::string_view(text).substr(colon + 1));
+  if (!open || !close || !(*open >= -1 && *close <= 1 && *open <= *close)) return false;
+  shutter = Shutter{*open, *close};
   return true;
 }
 
@@ -151,7 +177,8 @@ void add_output(std::vector<Option>& table) {
       parsed("channels", "NAME,...", kOutput, "names of channels",
              "optional channels to write, comma-separated: default, which is normal, reflectance, "
              "camera, visibility, hit_distance, direction, material, roughness, and what there is "
-             "unless given; film, lens, time, frame, alpha, kind; or all",
+             "unless given; film, lens, time, frame, alpha, kind, rest_position; or "
+             "all",
              [](Job& job, const std::string& text) {
                job.settings.channels.push_back(text);
                return true;
@@ -187,6 +214,12 @@ void add_sampling(std::vector<Option>& table) {
   table.push_back(number(
       "passes", kSampling, [](Job & j) -> auto& { return j.settings.passes; }, std::uint64_t{1},
       kMany, "paths a pixel"));
+  table.push_back(parsed(
+      "frames", "FIRST:LAST", kSampling,
+      fmt::format("FIRST:LAST, LAST not included, or one frame, from 0 to {}", kMostFrames - 1),
+      "frames of the scene, LAST not included, each with all the passes; #### in the name of the "
+      "output makes a file a frame; frame 0 unless given",
+      [](Job& job, const std::string& text) { return parse_frames(text, job.settings.frames); }));
   table.push_back(choice(
       "sampler", kSampling, [](Job & j) -> auto& { return j.settings.sampler.kind; },
       {{"sobol", SamplerKind::sobol},
@@ -277,6 +310,15 @@ void add_scene(std::vector<Option>& table) {
                            fov = parse_number<float>(text);
                            return fov && *fov > 0 && *fov < 180;
                          }));
+  table.push_back(
+      parsed("shutter", "OPEN:CLOSE", kScene, "OPEN:CLOSE in frames, from -1 to 1",
+             "when the shutter of every camera opens and closes, in frames behind its frame",
+             [](Job& job, const std::string& text) {
+               return parse_shutter(text, job.overrides.shutter);
+             }));
+  table.push_back(number(
+      "fps", kScene, [](Job & j) -> auto& { return j.fps; }, 1e-3, 1e6,
+      "frames a second, for the animations of glTF, which count in seconds"));
   table.push_back(
       parsed("sky", "R,G,B|GREY|FILE", kScene,
              "three numbers R,G,B of at least 0 or one for grey or a picture",

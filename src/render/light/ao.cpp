@@ -70,8 +70,9 @@ float AoIntegrator::look(const Vertex& x, Sampler& sampler, std::uint64_t& rays)
   if (dot(direction, x.surface.geometric_normal) <= 0) return 0;
   Hit hit;
   const float reach = transport_.settings().ao_distance;
-  const bool met = transport_.caster().nearest(x.surface.origin_toward(direction),
-                                               normalize(direction), reach, sampler, hit, rays);
+  const bool met =
+      transport_.caster().nearest(x.surface.origin_toward(direction), normalize(direction), reach,
+                                  x.surface.time, sampler, hit, rays);
   return met ? hit.distance : std::numeric_limits<float>::infinity();
 }
 

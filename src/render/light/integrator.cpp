@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "render/light/integrators.h"
+#include "render/scene/motion.h"
 
 namespace psf::render {
 
@@ -16,7 +17,10 @@ const std::vector<std::string>& integrator_names() {
 
 PathRecord in_world(PathRecord record, const Space& space) {
   if (space.is_world()) return record;
-  if (record.has_vertex) record.position = Vec3(space.world(record.position));
+  if (record.has_vertex) {
+    record.position = Vec3(space.world(record.position));
+    record.rest = Vec3(space.world(record.rest));
+  }
   record.distance = space.world_length(record.distance);
   record.hit_distance = space.world_length(record.hit_distance);
   return record;
@@ -51,6 +55,12 @@ std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Integrator
         ErrorCode::usage,
         "`vertices`: only the paths of the integrators path and direct, without `split`, are "
         "chains of vertices");
+  }
+  if (shapes_move(scene) &&
+      (settings.name == "vpl" || settings.name == "photon" || settings.photons > 0)) {
+    throw Error(ErrorCode::usage,
+                "paths from the lights (`vpl`, `photon`, `photons`) know no motion while the "
+                "shutter is open; use `path`, or the shutter 0:0");
   }
   if (settings.photons > 0 && settings.name == "ao") {
     throw Error(ErrorCode::usage, "`photons`: the integrator ao has no lights");

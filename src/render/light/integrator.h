@@ -61,6 +61,7 @@ enum class VertexKind : std::uint8_t { surface, curve, volume };
 
 struct Ray {
   Vec3 origin, direction;  // direction is unit
+  float time = 0;          // in [0, 1], of Scene::shutter
 };
 
 // Everything that the path-vertex buffer stores of one path; the symbols are those of
@@ -87,6 +88,7 @@ struct PathRecord {
   // went to the background. Not alpha_i.
   float coverage = 0;
   VertexKind kind = VertexKind::surface;
+  Vec3 rest{0, 0, 0};  // x_i as it was at frame 0, as far as the scene keeps it
 };
 
 // Converts `record`, whose lengths and positions are those of `space`, to world units.

@@ -53,6 +53,7 @@ bool Lights::sample(std::size_t light, const Surface& from, const Vec2& u,
       // On the light itself, rounding must not decide on which side.
       const bool own = from.emitter == static_cast<int>(light);
       if (own && from.front) return false;
+      if (r.sphere != nullptr) return sample_sphere(sphere_at(r, from.time), from, own, u, sample);
       return sample_sphere(r, from, own, u, sample);
     }
     case Kind::point:
@@ -92,7 +93,9 @@ Vec2 Lights::texture_point(const Record& light, std::size_t triangle, float b1, 
 bool Lights::sample_mesh(const Record& light, const Surface& from, Vec2 u,
                          LightSample& sample) const {
   const std::size_t k = light.areas.sample(u.x);
-  const Triangle& triangle = triangles_[light.first + k];
+  float stretch = 1;
+  const Triangle triangle = light.mesh->motion.empty() ? triangles_[light.first + k]
+                                                       : triangle_at(light, k, from.time, stretch);
   const float root = std::sqrt(u.x), b1 = root * (1 - u.y), b2 = root * u.y;
   const Vec3 point = triangle.corner + triangle.edge1 * b1 + triangle.edge2 * b2;
   const Vec3 toward = point - from.position;
@@ -103,7 +106,7 @@ bool Lights::sample_mesh(const Record& light, const Surface& from, Vec2 u,
   const float side = cosine > 0 ? 1.0f : -1.0f;
   if (side < 0 && !light.both_sides) return false;
   cosine *= side;
-  sample.pdf = distance_sq * light.extent / cosine;
+  sample.pdf = distance_sq * light.extent / (stretch * cosine);
   if (!(cosine > 0) || !std::isfinite(sample.pdf)) return false;
   sample.target = point + triangle.normal * (side * triangle.offset);
   sample.infinite = false;
@@ -164,10 +167,12 @@ Rgb Lights::emitted(const Arrival& arrival, const Surface& hit) const {
   float pdf = 0;
   if (arrival.pdf > 0) {
     if (r.kind == Kind::sphere) {
-      pdf = sphere_pdf(r, arrival.from, !hit.front);
+      pdf = r.sphere != nullptr ? sphere_pdf(sphere_at(r, hit.time), arrival.from, !hit.front)
+                                : sphere_pdf(r, arrival.from, !hit.front);
     } else {
       const float cosine = -dot(arrival.direction, hit.geometric_normal);
-      pdf = length_sq(hit.position - arrival.from) * r.extent / std::max(cosine, 1e-20f);
+      pdf = length_sq(hit.position - arrival.from) * r.extent /
+            (hit.stretch * std::max(cosine, 1e-20f));
     }
   }
   return radiance(r, hit.uv) * weight(arrival, light, pdf);

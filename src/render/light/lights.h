@@ -101,8 +101,9 @@ class Lights {
     const Texture* texture = nullptr;  // texture of the emission
     Opacity opacity;                   // of mesh and sphere
     const Mesh* mesh = nullptr;
-    std::size_t first = 0;  // mesh: its first triangle in triangles_
-    Distribution areas;     // mesh
+    const Sphere* sphere = nullptr;  // where it moves
+    std::size_t first = 0;           // mesh: its first triangle in triangles_
+    Distribution areas;              // mesh
   };
   struct Triangle {
     Vec3 corner, edge1, edge2;
@@ -116,6 +117,12 @@ class Lights {
   [[nodiscard]] static Rgb radiance(const Record& light, const Vec2& uv);
   // The same on the average over what rays meet there: its share that is not there emits nothing.
   [[nodiscard]] static Rgb mean_radiance(const Record& light, const Vec2& uv);
+  // A triangle of a mesh where it is at a time. It is chosen by its share of the area at the frame,
+  // so the density of points on it is 1 / area of the mesh, over Surface::stretch.
+  [[nodiscard]] Triangle triangle_at(const Record& light, std::size_t k, float time,
+                                     float& stretch) const;
+  // A sphere that moves, where it is at a time.
+  [[nodiscard]] static Record sphere_at(const Record& light, float time);
   // These fill everything but the number of the light. `choice` takes one of two sides.
   void emit_mesh(const Record& light, float choice, Vec2 where, const Vec2& whither,
                  Emission& emission) const;

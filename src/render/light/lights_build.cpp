@@ -141,6 +141,7 @@ float Lights::add(const Sphere& sphere, const Scene& scene) {
   r.opacity = Opacity::of(material, scene);
   r.position = sphere.center;
   r.extent = sphere.radius;
+  if (!sphere.motion.empty()) r.sphere = &sphere;
   const float power = 4 * kPi * kPi * sphere.radius * sphere.radius * (r.both_sides ? 2.0f : 1.0f) *
                       mean_luminance(r.radiance, r.texture);
   lights_.push_back(std::move(r));

@@ -35,25 +35,25 @@ RayCaster::RayCaster(const Scene& scene, const Accel& accel, const Shapes& shape
   if (std::ranges::all_of(opacities_, &Opacity::full)) opacities_.clear();
 }
 
-bool RayCaster::nearest(const Vec3& origin, const Vec3& direction, float reach, Sampler& sampler,
-                        Hit& hit, std::uint64_t& rays) const {
+bool RayCaster::nearest(const Vec3& origin, const Vec3& direction, float reach, float time,
+                        Sampler& sampler, Hit& hit, std::uint64_t& rays) const {
   float beyond = 0;
   for (int passed = 0;; ++passed) {
     ++rays;
-    if (!accel_.intersect(origin, direction, hit, reach, beyond)) return false;
+    if (!accel_.intersect(origin, direction, hit, reach, time, beyond)) return false;
     if (opacities_.empty() || passed == kMostPassed) return true;
-    const Surface surface = shapes_.surface(hit, direction);
+    const Surface surface = shapes_.surface(hit, direction, time);
     const float opacity = opacity_of(surface);
     if (opacity >= 1 || (opacity > 0 && sampler.next_1d() < opacity)) return true;
     beyond = behind(hit, surface);
   }
 }
 
-float RayCaster::transmittance(const Vec3& origin, const Vec3& direction, float reach,
+float RayCaster::transmittance(const Vec3& origin, const Vec3& direction, float reach, float time,
                                std::uint64_t& rays) const {
   if (opacities_.empty()) {
     ++rays;
-    return accel_.occluded(origin, direction, reach) ? 0.0f : 1.0f;
+    return accel_.occluded(origin, direction, reach, time) ? 0.0f : 1.0f;
   }
   const float length = std::sqrt(length_sq(direction));
   const Vec3 unit = direction * (1 / length);
@@ -61,8 +61,8 @@ float RayCaster::transmittance(const Vec3& origin, const Vec3& direction, float 
   for (int passed = 0;; ++passed) {
     Hit hit;
     ++rays;
-    if (!accel_.intersect(origin, unit, hit, reach * length, beyond)) return share;
-    const Surface surface = shapes_.surface(hit, unit);
+    if (!accel_.intersect(origin, unit, hit, reach * length, time, beyond)) return share;
+    const Surface surface = shapes_.surface(hit, unit, time);
     share *= 1 - opacity_of(surface);
     if (!(share > 0) || passed == kMostPassed) return 0;
     beyond = behind(hit, surface);

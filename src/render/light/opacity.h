@@ -40,14 +40,14 @@ class RayCaster {
   RayCaster(const Scene& scene, const Accel& accel, const Shapes& shapes);
 
   // Finds what the ray meets first, at a distance in (0, reach]; returns false where that is nothing.
-  // `direction` is unit. Takes a number of the sampler at each surface that is neither whole nor a
+  // `direction` is unit; `time` as of Accel::intersect(). Takes a number of the sampler at each surface that is neither whole nor a
   // hole. Adds the rays that this took to `rays`.
-  [[nodiscard]] bool nearest(const Vec3& origin, const Vec3& direction, float reach,
+  [[nodiscard]] bool nearest(const Vec3& origin, const Vec3& direction, float reach, float time,
                              Sampler& sampler, Hit& hit, std::uint64_t& rays) const;
   // The share of the light that comes through on the way from origin + reach * direction.
   // `direction` may have any length.
   [[nodiscard]] float transmittance(const Vec3& origin, const Vec3& direction, float reach,
-                                    std::uint64_t& rays) const;
+                                    float time, std::uint64_t& rays) const;
 
  private:
   [[nodiscard]] float opacity_of(const Surface& surface) const;

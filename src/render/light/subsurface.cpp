@@ -8,17 +8,17 @@ namespace {
 // A walk that carries less than this of what it brought in plays Russian roulette.
 constexpr float kFaint = 0.1f;
 
-Vertex medium_vertex(const Medium& medium, int material, const Vec3& position,
-                     const Vec3& direction) {
+Vertex medium_vertex(const Medium& medium, int material, const Ray& ray) {
   Surface at;
-  at.position = position;
-  at.geometric_normal = at.normal = -direction;
+  at.time = ray.time;
+  at.position = ray.origin;
+  at.geometric_normal = at.normal = -ray.direction;
   at.uv = Vec2(0, 0);
   at.offset = 0;
   at.material = material;
   at.emitter = kNone;
   at.front = true;
-  return {at, Bsdf::of_medium(medium), Frame(at.normal), -direction, Vec3(0, 0, 1)};
+  return {at, Bsdf::of_medium(medium), Frame(at.normal), -ray.direction, Vec3(0, 0, 1)};
 }
 
 // The other side of the surface that a ray met.
@@ -50,7 +50,8 @@ std::optional<Vertex> Transport::next_inside(Walk& walk, Sampler& sampler,
     const float sampled = sample_distance(medium, walk.ray, walk.within, sampler);
     ++rays;
     Hit hit;
-    const bool met = accel_.intersect(walk.ray.origin, walk.ray.direction, hit, sampled);
+    const bool met =
+        accel_.intersect(walk.ray.origin, walk.ray.direction, hit, sampled, walk.ray.time);
     const Flight flight{!met, met ? hit.distance : sampled};
     const Rgb weight = flight_weight(medium, walk.ray, walk.within, flight);
     walk.within = walk.within * weight;
@@ -58,7 +59,7 @@ std::optional<Vertex> Transport::next_inside(Walk& walk, Sampler& sampler,
     if (walk.trail != nullptr) walk.trail->attenuate(weight);
     if (is_black(walk.throughput)) return std::nullopt;
     if (met) {
-      const Surface surface = shapes_.surface(hit, walk.ray.direction);
+      const Surface surface = shapes_.surface(hit, walk.ray.direction, walk.ray.time);
       if (overlaps(surface, body, walk.bodies)) {
         walk.ray.origin = surface.origin_toward(walk.ray.direction);
         continue;
@@ -75,7 +76,7 @@ std::optional<Vertex> Transport::next_inside(Walk& walk, Sampler& sampler,
       return std::nullopt;
     if (!survives_inside(walk, sampler)) return std::nullopt;
     if (material.ior == 1) {
-      return arrive(medium_vertex(medium, body, walk.ray.origin, walk.ray.direction));
+      return arrive(medium_vertex(medium, body, walk.ray));
     }
     walk.ray.direction =
         normalize(Frame(walk.ray.direction).to_world(sample_phase(medium.g, sampler.next_2d())));
@@ -113,17 +114,18 @@ bool Transport::leaves_body(const Vertex& v, const LightSample& sample, Vec3& or
   const int material = v.surface.material;
   const int interior = scene_.materials[static_cast<std::size_t>(material)].interior;
   const Medium& medium = scene_.media[static_cast<std::size_t>(interior)];
+  const float time = v.surface.time;
   int bodies = v.bodies;
   for (;;) {
     float reach = std::numeric_limits<float>::infinity();
     if (!sample.infinite) reach = std::sqrt(length_sq(sample.target - origin));
     ++rays;
     Hit hit;
-    const bool met = accel_.intersect(origin, sample.direction, hit, reach * (1 - 0x1p-17f));
+    const bool met = accel_.intersect(origin, sample.direction, hit, reach * (1 - 0x1p-17f), time);
     const float distance = met ? hit.distance : reach;
     left = left * transmittance(medium, {origin, sample.direction}, distance, sampler);
     if (!met || is_black(left)) return !is_black(left);
-    const Surface surface = shapes_.surface(hit, sample.direction);
+    const Surface surface = shapes_.surface(hit, sample.direction, time);
     origin = surface.origin_toward(sample.direction);
     if (overlaps(surface, material, bodies)) continue;
     const Material& other = scene_.materials[static_cast<std::size_t>(surface.material)];

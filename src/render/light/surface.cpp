@@ -2,6 +2,7 @@
 #include "render/light/surface.h"
 
 #include "render/light/frame.h"
+#include "render/scene/motion.h"
 
 namespace psf::render {
 
@@ -30,20 +31,29 @@ Shapes::Shapes(const Scene& scene) {
   for (const Mesh& m : scene.meshes) {
     meshes_.push_back({m.positions.data(), m.normals.empty() ? nullptr : m.normals.data(),
                        m.uvs.empty() ? nullptr : m.uvs.data(), m.triangles.data(), m.material,
-                       kNone});
+                       kNone, &m});
   }
   spheres_.reserve(scene.spheres.size());
   for (const Sphere& s : scene.spheres) {
-    spheres_.push_back({s.center, s.radius, s.material, kNone});
+    spheres_.push_back({s.center, s.radius, s.material, kNone, &s});
   }
 }
 
-Surface Shapes::surface(const Hit& hit, const Vec3& direction) const {
+Surface Shapes::surface(const Hit& hit, const Vec3& direction, float time) const {
   Surface s;
+  s.time = time;
   if (hit.geometry < meshes_.size()) {
     const MeshView& mesh = meshes_[hit.geometry];
     const auto& [a, b, c] = mesh.triangles[hit.primitive];
-    const Vec3 &p0 = mesh.positions[a], &p1 = mesh.positions[b], &p2 = mesh.positions[c];
+    Vec3 p0 = mesh.positions[a], p1 = mesh.positions[b], p2 = mesh.positions[c];
+    const bool moves = !mesh.mesh->motion.empty();
+    if (moves) {
+      const float still = TriangleNormal(p1 - p0, p2 - p0).size;
+      p0 = position_at(*mesh.mesh, a, time);
+      p1 = position_at(*mesh.mesh, b, time);
+      p2 = position_at(*mesh.mesh, c, time);
+      s.stretch = TriangleNormal(p1 - p0, p2 - p0).size / still;
+    }
     const float w = 1 - hit.u - hit.v;
     // Weights of the corners, not origin + t * direction: the error does not grow with the
     // distance.
@@ -53,7 +63,10 @@ Surface Shapes::surface(const Hit& hit, const Vec3& direction) const {
     s.geometric_normal = flat.size > 0 ? flat.normal : -direction;
     s.normal = s.geometric_normal;
     if (mesh.normals != nullptr) {
-      const Vec3 sum = mesh.normals[a] * w + mesh.normals[b] * hit.u + mesh.normals[c] * hit.v;
+      const auto normal = [&](std::uint32_t i) {
+        return moves ? normal_at(*mesh.mesh, i, time) : mesh.normals[i];
+      };
+      const Vec3 sum = normal(a) * w + normal(b) * hit.u + normal(c) * hit.v;
       const float sum_sq = length_sq(sum);
       if (sum_sq > 1e-12f) s.normal = sum * (1 / std::sqrt(sum_sq));
     }
@@ -61,12 +74,18 @@ Surface Shapes::surface(const Hit& hit, const Vec3& direction) const {
                                : Vec2(hit.u, hit.v);
     s.material = mesh.material;
     s.emitter = mesh.emitter;
+    const std::vector<Vec3>& rest = mesh.mesh->rest;
+    s.rest = rest.empty() ? s.position : rest[a] * w + rest[b] * hit.u + rest[c] * hit.v;
   } else {
     const SphereView& sphere = spheres_[hit.primitive];
     s.geometric_normal = normalize(hit.normal);
     s.normal = s.geometric_normal;
-    s.position = sphere.center + s.normal * sphere.radius;
-    s.offset = (max_abs(sphere.center) + sphere.radius) * kOffsetScale;
+    Ball ball{sphere.center, sphere.radius};
+    if (!sphere.sphere->motion.empty()) ball = ball_at(sphere.sphere->motion, time);
+    s.position = ball.center + s.normal * ball.radius;
+    s.offset = (max_abs(ball.center) + ball.radius) * kOffsetScale;
+    const std::optional<Ball>& rest = sphere.sphere->rest;
+    s.rest = rest ? rest->center + s.normal * rest->radius : s.position;
     s.uv = direction_to_uv(s.normal);
     s.material = sphere.material;
     s.emitter = sphere.emitter;

@@ -19,6 +19,10 @@ struct Surface {
   int material;  // index in Scene::materials
   int emitter;   // number of its light; kNone: it emits nothing
   bool front;    // the ray met the front side
+  float time = 0;  // that of the ray
+  // Area of the triangle where it moves, now over that at the frame.
+  float stretch = 1;
+  Vec3 rest{0, 0, 0};  // the place of this point at frame 0, as far as the scene keeps it
 
   // The normal as it is shaded for whoever looks along the unit `direction` at this side: where it
   // would face away, it is bent just into sight.
@@ -50,8 +54,8 @@ class Shapes {
   // set_sphere_emitter() is called for it.
   explicit Shapes(const Scene& scene);
 
-  // `direction`: unit direction of the ray.
-  [[nodiscard]] Surface surface(const Hit& hit, const Vec3& direction) const;
+  // `direction`: unit direction of the ray; `time`: its time.
+  [[nodiscard]] Surface surface(const Hit& hit, const Vec3& direction, float time = 0) const;
 
   void set_mesh_emitter(std::size_t mesh, int light) { meshes_[mesh].emitter = light; }
   void set_sphere_emitter(std::size_t sphere, int light) { spheres_[sphere].emitter = light; }
@@ -63,11 +67,13 @@ class Shapes {
     const Vec2* uvs;      // null: the mesh has none
     const std::array<std::uint32_t, 3>* triangles;
     int material, emitter;
+    const Mesh* mesh;
   };
   struct SphereView {
     Vec3 center;
     float radius;
     int material, emitter;
+    const Sphere* sphere;
   };
 
   std::vector<MeshView> meshes_;

@@ -48,10 +48,11 @@ Transport::Transport(const Scene& scene, const IntegratorSettings& settings)
 float Transport::next_surface(const Walk& walk, Surface& surface, Sampler& sampler,
                               std::uint64_t& rays) const {
   Hit hit;
-  if (!caster_.nearest(walk.ray.origin, walk.ray.direction, kEndless, sampler, hit, rays)) {
+  if (!caster_.nearest(walk.ray.origin, walk.ray.direction, kEndless, walk.ray.time, sampler, hit,
+                       rays)) {
     return kEndless;
   }
-  surface = shapes_.surface(hit, walk.ray.direction);
+  surface = shapes_.surface(hit, walk.ray.direction, walk.ray.time);
   if (walk.trail != nullptr) walk.trail->arrive(surface, walk.ray.direction, hit.distance);
   return hit.distance;
 }
@@ -115,9 +116,11 @@ Rgb Transport::direct_from(std::size_t light, float probability, const Vertex& v
   if (v.bodies > 0 && !leaves_body(v, sample, origin, left, sampler, rays)) return {0, 0, 0};
   // Both ends lie off their surfaces; stopping a hair short keeps rounding from reaching the
   // light's own.
+  const float time = v.surface.time;
   const float seen =
-      sample.infinite ? caster_.transmittance(origin, sample.direction, kEndless, rays)
-                      : caster_.transmittance(origin, sample.target - origin, 1 - 0x1p-17f, rays);
+      sample.infinite
+          ? caster_.transmittance(origin, sample.direction, kEndless, time, rays)
+          : caster_.transmittance(origin, sample.target - origin, 1 - 0x1p-17f, time, rays);
   if (!(seen > 0)) return {0, 0, 0};
   if (seen > kSeen && light < lights_.count()) visibility |= 1u << (light % kEveryLight);
 
@@ -178,7 +181,7 @@ bool Transport::go_on(const Vertex& v, const BsdfSample& sample, const Vec3& dir
     walk.within = Rgb(1, 1, 1);
   }
   walk.body = sample.inside ? v.surface.material : kNone;
-  walk.ray = {v.surface.origin_toward(direction), normalize(direction)};
+  walk.ray = {v.surface.origin_toward(direction), normalize(direction), v.surface.time};
   return true;
 }
 
@@ -225,6 +228,7 @@ bool Transport::survives(Walk& walk, Sampler& sampler) const {
 void Transport::record_vertex(const Vertex& v, const Walk& walk, PathRecord& record) const {
   record.has_vertex = true;
   record.position = v.surface.position;
+  record.rest = v.surface.rest;
   record.normal = v.surface.normal;
   record.reflectance = v.bsdf.albedo();
   record.throughput = walk.throughput;

@@ -145,8 +145,8 @@ Rgb VplIntegrator::connect(const Vertex& x, const LightVertex& vpl, float near,
   if (is_black(f)) return f;
 
   const Vec3 origin = x.surface.origin_toward(toward), target = y.origin_toward(-toward);
-  const float through =
-      transport().caster().transmittance(origin, target - origin, 1 - 0x1p-17f, rays);
+  const float through = transport().caster().transmittance(origin, target - origin, 1 - 0x1p-17f,
+                                                           x.surface.time, rays);
   if (!(through > 0)) return {0, 0, 0};
   // evaluate() is times the cosine, which power has in it already.
   const float area = dot(vpl.at.out, y.geometric_normal) * distance_sq;

@@ -17,9 +17,6 @@ const void* bytes(const std::vector<T>& values) {
   return values.data();
 }
 
-// Names that stand for channels.
-constexpr std::string_view kDefaultChannels = "default", kAllChannels = "all";
-
 struct LayerChannel {
   std::string name;
   std::span<Rgb> LayerSums::*part;
@@ -74,7 +71,8 @@ struct ColumnTable {
         {{"time", Type::f32, 1}, asked, [](R r) { return bytes(r.time_); }},
         {{"frame", Type::u32, 1}, asked, [](R r) { return bytes(r.frame_); }},
         {{"alpha", Type::f32, 1}, asked, [](R r) { return bytes(r.coverage_); }},
-        {{"kind", Type::u8, 1}, asked, [](R r) { return bytes(r.kind_); }}};
+        {{"kind", Type::u8, 1}, asked, [](R r) { return bytes(r.kind_); }},
+        {{kRestPosition, Type::f32, 3}, asked, [](R r) { return bytes(r.rest_); }}};
     return table;
   }
 };
@@ -147,6 +145,7 @@ Recorder::Recorder(std::size_t capacity, std::span<const LayerInfo> layers,
   make_room("frame", frame_);
   make_room("alpha", coverage_);
   make_room("kind", kind_);
+  make_room(kRestPosition, rest_);
 }
 
 void Recorder::set(std::size_t slot, std::uint16_t camera, std::uint32_t pixel,
@@ -169,6 +168,7 @@ void Recorder::set(std::size_t slot, std::uint16_t camera, std::uint32_t pixel,
                                            (record.shaded ? kShadedFlag : 0));
   if (!coverage_.empty()) coverage_[slot] = record.coverage;
   if (!kind_.empty()) kind_[slot] = record.kind;
+  if (!rest_.empty()) rest_[slot] = record.rest;
   for (LayerColumn& column : layers_) column.values[slot] = (sums.*column.part)[column.layer];
 }
 

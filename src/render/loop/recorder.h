@@ -16,6 +16,11 @@ namespace psf::render {
 
 constexpr std::uint8_t kHasVertexFlag = 1;  // bits of the channel `flags`
 constexpr std::uint8_t kShadedFlag = 2;
+constexpr const char* kRestPosition = "rest_position";  // a channel for which scenes keep more
+
+// Names that stand for channels.
+constexpr const char* kDefaultChannels = "default";
+constexpr const char* kAllChannels = "all";
 
 // The channels to write, in the format's order: those that the format requires; `flags` and
 // `unfiltered`, without which pictures cannot be made; and of the others those in `optional`, where
@@ -78,6 +83,7 @@ class Recorder {
   std::vector<float> time_, coverage_;
   std::vector<std::uint32_t> frame_;
   std::vector<VertexKind> kind_;
+  std::vector<Vec3> rest_;
   // A channel of a layer, and the layer's number.
   struct LayerColumn {
     std::string channel;

@@ -21,6 +21,8 @@
 #include "render/loop/resume.h"
 #include "render/loop/shade_rate.h"
 #include "render/loop/vertex_table.h"
+#include "render/sample/sampler_hash.h"
+#include "render/scene/motion.h"
 
 namespace psf::render {
 namespace {
@@ -38,6 +40,9 @@ struct View {
   CameraRays rays;
   std::uint32_t width, height;
   std::uint64_t first;  // path of the pass
+  // Whether the time of paths is drawn, and from when to when on, as rays have it.
+  bool blurs;
+  float opens, closes;
   [[nodiscard]] std::size_t pixels() const { return std::size_t{width} * height; }
 };
 
@@ -71,26 +76,47 @@ float in_pixel(float position, std::uint32_t pixel) {
   return std::min(position, std::nextafter(static_cast<float>(pixel + 1), 0.0f));
 }
 
+// The sets of light paths of a frame are its own.
+SamplerSettings light_sampler(SamplerSettings settings, std::uint32_t frame) {
+  if (frame > 0) settings.seed = mix(settings.seed + frame * kGolden);
+  return settings;
+}
+
+// Where the scene's shutter is, between 0 and 1, at this time of a camera's.
+float shutter_time(const Scene& scene, float time) {
+  const float length = scene.shutter.close - scene.shutter.open;
+  return std::clamp((time - scene.shutter.open) / length, 0.0f, 1.0f);
+}
+
 class Loop {
  public:
   Loop(const Scene& scene, const Integrator& integrator, const RenderSettings& settings,
-       formats::Writer* writer)
+       formats::Writer* writer, const FrameOf& frame)
       : integrator_(integrator),
         space_(scene.space),
         settings_(settings),
+        frame_(settings.frame_range().first + frame.index),
+        first_pass_(frame.index * settings.passes),
+        lights_(light_sampler(settings.sampler, frame_)),
         writer_(writer),
         shade_rate_(settings.shade_rate),
         channels_(record_channels(settings.channels, integrator.layers())),
         has_sample_(has_sample(channels_)) {
+    const bool moves = anything_moves(scene);
     result_.films.reserve(settings.cameras.size());
     std::size_t largest = 0;
     for (const std::size_t index : settings.cameras) {
       const Camera& camera = scene.cameras[index];
-      views_.push_back({CameraRays(camera), camera.width, camera.height, paths_a_pass_});
+      const Shutter& shutter = camera.shutter;
+      views_.push_back({CameraRays(camera), camera.width, camera.height, paths_a_pass_,
+                        moves && shutter.blurs(), moves ? shutter_time(scene, shutter.open) : 0,
+                        moves ? shutter_time(scene, shutter.close) : 0});
       paths_a_pass_ += views_.back().pixels();
       largest = std::max(largest, views_.back().pixels());
       result_.films.emplace_back(camera.width, camera.height);
     }
+    result_.passes = first_pass_;
+    if (frame.before != nullptr) continue_from(*frame.before);
     if (settings.integrator.vertices > 0) slab_ = kVertexSlab;
     for (auto& slab : slabs_) {
       slab = std::make_unique<Slab>(std::min(slab_, largest), integrator.layers(), channels_);
@@ -102,6 +128,7 @@ class Loop {
   RenderResult run();
 
  private:
+  void continue_from(const RenderResult& before);
   void replay();
   void trace_pass(std::uint64_t pass);
   void trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t first, std::size_t count);
@@ -117,6 +144,9 @@ class Loop {
   const Integrator* tracer_ = nullptr;  // of the pass
   Space space_;
   const RenderSettings& settings_;
+  std::uint32_t frame_;       // its number
+  std::uint64_t first_pass_;  // of the frame, in the file
+  SamplerSettings lights_;
   formats::Writer* writer_;
   ShadeRate shade_rate_;
   std::vector<formats::Channel> channels_;
@@ -136,6 +166,14 @@ class Loop {
   std::future<void> output_;
 };
 
+void Loop::continue_from(const RenderResult& before) {
+  result_.non_finite = before.non_finite;
+  result_.output_seconds = before.output_seconds;
+  paths_done_ = before.paths;
+  rays_ = before.rays;
+  seconds_before_ = before.seconds;
+}
+
 void Loop::resume(const formats::Head& head) {
   const Done done = resume_point(*writer_, head, settings_, paths_a_pass_);
   if (settings_.replay) replay();
@@ -152,8 +190,11 @@ void Loop::replay() {
   const formats::Reader reader(writer_->path());
   core::Progress progress("read back", settings_.quiet);
   Recorder& recorder = slabs_[0]->records;
-  std::uint64_t path = 0;
-  while (path < reader.records()) {
+  std::uint64_t path = first_pass_ * paths_a_pass_;
+  // A file of one frame may have more passes than are asked for.
+  std::uint64_t end = reader.records();
+  if (settings_.frames) end = std::min(end, path + settings_.passes * paths_a_pass_);
+  while (path < end) {
     for (std::size_t camera = 0; camera < views_.size(); ++camera) {
       const std::size_t pixels = views_[camera].pixels();
       for (std::size_t first = 0; first < pixels; first += slab_) {
@@ -162,7 +203,7 @@ void Loop::replay() {
         recorder.load(reader, path, count);
         (void)recorder.add_to(result_.films[camera], count, settings_.shade_rate);
         path += count;
-        progress.advance(path, reader.records());
+        progress.advance(path, end);
       }
     }
   }
@@ -172,15 +213,18 @@ void Loop::replay() {
 RenderResult Loop::run() {
   core::Progress progress("render", settings_.quiet);
   progress_ = &progress;
-  while (result_.passes < settings_.passes) {
+  const std::uint64_t total = settings_.total_passes();
+  while (result_.passes < first_pass_ + settings_.passes) {
     trace_pass(result_.passes);
     ++result_.passes;
-    if (core::interrupted() || seconds_since(start_) >= settings_.time_limit) break;
+    result_.out_of_time = seconds_since(start_) >= settings_.time_limit;
+    if (core::interrupted() || result_.out_of_time) break;
   }
   wait_for_output();
   progress.finish();
-  result_.interrupted = core::interrupted() && result_.passes < settings_.passes;
-  if (writer_ != nullptr && !result_.interrupted) writer_->close();
+  result_.interrupted = core::interrupted() && result_.passes < total;
+  const bool ends = first_pass_ + settings_.passes == total || result_.out_of_time;
+  if (writer_ != nullptr && ends && !result_.interrupted) writer_->close();
   result_.paths = paths_done_;
   result_.rays = rays_;
   result_.seconds = seconds_before_ + seconds_since(start_);
@@ -189,7 +233,7 @@ RenderResult Loop::run() {
 
 void Loop::trace_pass(std::uint64_t pass) {
   std::uint64_t rays = 0;
-  const auto made = integrator_.for_pass(settings_.sampler, pass, rays);
+  const auto made = integrator_.for_pass(lights_, pass - first_pass_, rays);
   rays_ += rays;
   tracer_ = made != nullptr ? made.get() : &integrator_;
   if (writer_ != nullptr && settings_.integrator.photons > 0) write_photons(pass);
@@ -223,11 +267,11 @@ void Loop::trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t firs
     });
     paths_done_ += size;
     if (settings_.on_progress) {
-      settings_.on_progress(paths_done_, settings_.passes * paths_a_pass_);
+      settings_.on_progress(paths_done_, settings_.total_passes() * paths_a_pass_);
     }
     const double rate =
         static_cast<double>(rays_) / std::max(1e-9, seconds_before_ + seconds_since(start_));
-    progress_->advance(paths_done_, settings_.passes * paths_a_pass_,
+    progress_->advance(paths_done_, settings_.total_passes() * paths_a_pass_,
                        fmt::format("{:.2f} M rays/s{}", rate / 1e6,
                                    core::interrupted() ? ", ending after this pass" : ""));
   }
@@ -239,8 +283,10 @@ void Loop::trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path
   const View& view = views_[camera];
   const bool global = settings_.sampler.enumeration == Enumeration::global;
   const std::uint64_t in_pass = view.first + path;
+  // The pass among those of all frames from 0 on.
+  const std::uint64_t point = settings_.frame_range().first * settings_.passes + pass;
   Sampler sampler(settings_.sampler, global ? 0 : static_cast<std::uint32_t>(in_pass),
-                  global ? pass * paths_a_pass_ + in_pass : pass);
+                  global ? point * paths_a_pass_ + in_pass : point);
   const Vec2 u = sampler.next_2d();
   std::uint32_t x = static_cast<std::uint32_t>(path % view.width);
   std::uint32_t y = static_cast<std::uint32_t>(path / view.width);
@@ -254,17 +300,20 @@ void Loop::trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path
     position = Vec2(static_cast<float>(plane_x), static_cast<float>(plane_y));
   }
   const Vec2 lens = view.rays.has_lens() ? sampler.next_2d() : Vec2(0, 0);
-  const bool shade = shade_rate_.shaded(x, y, pass);
+  const float time = view.blurs ? sampler.next_1d() : 0;
+  const float moment = view.opens + time * (view.closes - view.opens);
+  const bool shade = shade_rate_.shaded(x, y, point);
   const LayerSums& sums = layers.cleared();
   if (trail != nullptr) trail->clear();
   PathRecord record =
-      tracer_->trace(view.rays.ray(position, lens), sampler, shade, rays, {sums, trail});
+      tracer_->trace(view.rays.ray(position, lens, moment), sampler, shade, rays, {sums, trail});
   // Without a vertex it is not shaded either way; the flag says that it counts.
   if (!record.has_vertex && settings_.shade_rate > 1) record.shaded = shade;
   slab.records.set(slot, camera, y * view.width + x, in_world(record, space_), sums);
   if (has_sample_) {
     const Vec2 on_lens = view.rays.has_lens() ? concentric_disk(lens) : Vec2(0, 0);
-    slab.records.set_sample(slot, {{in_pixel(position.x, x), in_pixel(position.y, y)}, on_lens});
+    slab.records.set_sample(
+        slot, {{in_pixel(position.x, x), in_pixel(position.y, y)}, on_lens, time, frame_});
   }
   if (trail == nullptr) return;
   add_vertices(trail->vertices(), static_cast<std::uint32_t>(in_pass), space_,
@@ -278,8 +327,8 @@ void Loop::write_photons(std::uint64_t pass) {
   for (std::uint64_t first = 0; first < paths; first += kPhotonSlab) {
     std::uint64_t rays = 0;
     const std::vector<PhotonRow> rows =
-        trace_photon_rows(*integrator_.light_transport(), space_, settings_.sampler, pass, paths,
-                          {first, std::min(kPhotonSlab, paths - first)}, rays);
+        trace_photon_rows(*integrator_.light_transport(), space_, lights_, pass - first_pass_,
+                          paths, {first, std::min(kPhotonSlab, paths - first)}, rays);
     rays_ += rays;
     wait_for_output();
     append_rows<PhotonRow>(*writer_, table, rows, photon_columns());
@@ -333,13 +382,15 @@ Done Loop::done_now() const {
 }  // namespace
 
 RenderResult render(const Scene& scene, const Integrator& integrator,
-                    const RenderSettings& settings, formats::Writer* writer) {
+                    const RenderSettings& settings, formats::Writer* writer, const FrameOf& frame) {
   settings.validate(scene);
   RenderSettings complete = settings;
   complete.cameras = chosen_cameras(scene, settings);
-  Loop loop(scene, integrator, complete, writer);
-  if (writer != nullptr && writer->passes() > 0) {
-    loop.resume(make_head(scene, integrator, settings));
+  Loop loop(scene, integrator, complete, writer, frame);
+  // A file that this run began ends where its next frame begins.
+  const std::uint64_t begun = frame.before == nullptr ? 0 : frame.index * settings.passes;
+  if (writer != nullptr && writer->passes() > begun) {
+    loop.resume(frame.head != nullptr ? *frame.head : make_head(scene, integrator, settings));
   }
   return loop.run();
 }

@@ -28,7 +28,11 @@ void RenderSettings::validate(const Scene& scene) const {
   for (const std::size_t k : chosen) {
     pixels += static_cast<double>(scene.cameras[k].width) * scene.cameras[k].height;
   }
-  const double paths = pixels * static_cast<double>(passes);
+  const FrameRange range = frame_range();
+  if (range.count == 0) throw Error(ErrorCode::usage, "frames: at least 1 is needed");
+  // Points of the sequences are numbered from frame 0 on.
+  const double paths = pixels * static_cast<double>(passes) *
+                       static_cast<double>(range.first + std::uint64_t{range.count});
   const bool vpls = integrator.name == "vpl",
              of_pixels = vpls && integrator.vpl_set == VplSet::pixel;
   std::uint32_t of_a_pass = integrator.photons;  // those of the table
@@ -56,8 +60,28 @@ std::vector<std::size_t> chosen_cameras(const Scene& scene, const RenderSettings
   return all;
 }
 
+namespace {
+
+formats::FrameInfo frame_info(const Scene& scene, const RenderSettings& settings,
+                              std::span<const std::vector<Camera>> frames) {
+  const FrameRange range = settings.frame_range();
+  formats::FrameInfo info{range.first, range.count, settings.passes, {}};
+  for (const std::vector<Camera>& cameras : frames) {
+    std::vector<formats::CameraInfo>& of_frame = info.cameras.emplace_back();
+    for (const std::size_t k : chosen_cameras(scene, settings)) {
+      of_frame.push_back(CameraRays(cameras[k]).info(scene.space));
+    }
+  }
+  const auto same = [&](const auto& cameras) { return cameras == info.cameras[0]; };
+  if (std::all_of(info.cameras.begin(), info.cameras.end(), same)) info.cameras.clear();
+  return info;
+}
+
+}  // namespace
+
 formats::Head make_head(const Scene& scene, const Integrator& integrator,
-                        const RenderSettings& settings) {
+                        const RenderSettings& settings,
+                        std::span<const std::vector<Camera>> frames) {
   formats::Metadata metadata;
   metadata.producer = settings.producer;
   metadata.scene = scene.name;
@@ -79,6 +103,7 @@ formats::Head make_head(const Scene& scene, const Integrator& integrator,
   for (const std::size_t k : chosen_cameras(scene, settings)) {
     metadata.cameras.push_back(CameraRays(scene.cameras[k]).info(scene.space));
   }
+  if (settings.frames) metadata.frames = frame_info(scene, settings, frames);
   metadata.lights = integrator.light_names();
   for (const Material& material : scene.materials) metadata.materials.push_back(material.name);
 
@@ -95,6 +120,13 @@ formats::Head make_head(const Scene& scene, const Integrator& integrator,
   while (head.metadata.size() > formats::kMaxMetadata && !metadata.materials.empty()) {
     metadata.materials.resize(metadata.materials.size() / 2);
     head.metadata = formats::to_json(metadata);
+  }
+  if (head.metadata.size() > formats::kMaxMetadata && frames.size() > 1) {
+    throw Error(
+        ErrorCode::limit,
+        fmt::format("the cameras of {} frames do not fit the metadata of a file; render fewer "
+                    "frames, or a file a frame, by #### in its name",
+                    frames.size()));
   }
   return head;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/scene/load_parts.h"
+#include "render/scene/motion.h"
 
 namespace psf::render {
 namespace {
@@ -87,12 +88,17 @@ void add(Digest& digest, const Mesh& mesh) {
   digest.add_array(mesh.uvs);
   digest.add_array(mesh.triangles);
   digest.add(mesh.material);
+  for (const MeshStep& step : mesh.motion) {
+    digest.add_array(step.positions);
+    digest.add_array(step.normals);
+  }
 }
 
 void add(Digest& digest, const Sphere& sphere) {
   digest.add(sphere.center);
   digest.add(sphere.radius);
   digest.add(sphere.material);
+  if (!sphere.motion.empty()) digest.add_array(sphere.motion);
 }
 
 void add(Digest& digest, const Light& light) {
@@ -114,6 +120,7 @@ void add(Digest& digest, const Camera& camera) {
   digest.add(std::uint64_t{camera.height});
   digest.add(camera.lens_radius);
   digest.add(camera.focus_distance);
+  if (!camera.motion.empty()) digest.add_array(camera.motion);
 }
 
 template <typename T>
@@ -141,6 +148,13 @@ std::string hash_of(const Scene& scene) {
     for (int axis = 0; axis < 3; ++axis)
       digest.add(std::bit_cast<std::uint64_t>(scene.space.origin[axis]));
     digest.add(scene.space.exponent);
+  }
+  if (!scene.animation.empty()) digest.add_array(scene.animation);
+  if (anything_moves(scene)) {
+    for (const Camera& camera : scene.cameras) {
+      digest.add(camera.shutter.open);
+      digest.add(camera.shutter.close);
+    }
   }
   return digest.text();
 }

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/lower.h"
 #include "render/scene/load_parts.h"
+#include "render/scene/motion.h"
 
 namespace psf::render {
 namespace fs = std::filesystem;
@@ -51,6 +52,7 @@ std::string find_file(const std::string& beside, const std::string& file) {
 
 int TextureTable::load(const std::string& scene_file, const std::string& file, TextureUse use,
                        const std::function<std::string()>& wanted_by) {
+  if (scene_.moment.parts != Moment::Parts::all) return kNone;
   const std::string path = find_file(scene_file, file);
   const auto [entry, is_new] = known_.try_emplace({path, use}, kNone);
   if (!is_new) return entry->second;
@@ -100,34 +102,72 @@ void scale_intensities(Scene& scene) {
   }
 }
 
+// Loads a file that is there by its extension.
+void load_file(const std::string& path, Scene& empty) {
+  const std::string extension = core::lower(fs::path(path).extension().string());
+  if (extension == ".json") return load_json(path, empty);
+  if (extension == ".obj" || extension == ".gltf" || extension == ".glb") {
+    return load_mesh_file(path, empty);
+  }
+  throw Error(ErrorCode::bad_input,
+              path + ": not a kind of scene that psf reads (.json, .obj, .gltf, .glb)");
+}
+
+// The scene at another frame, in the same space.
+Scene load_again(const std::string& path, const Scene& scene, double frame, Moment::Parts parts) {
+  Scene other;
+  other.name = scene.name;
+  other.space = scene.space;
+  other.moment = {frame, scene.moment.fps, parts};
+  load_file(path, other);
+  stop_where_interrupted();
+  return other;
+}
+
 }  // namespace
 
-Scene load_scene(const std::string& path, const SceneOverrides& overrides) {
+Scene load_scene(const std::string& path, const SceneOverrides& overrides, const Moment& moment,
+                 bool rest) {
   std::error_code error;
   if (!fs::exists(path, error)) throw Error(ErrorCode::io, path + ": no such file");
   if (fs::is_directory(path, error))
     throw Error(ErrorCode::io, path + ": is a folder, a scene file is needed");
-  const std::string extension = core::lower(fs::path(path).extension().string());
   Scene scene = load_fitting(path, [&](Scene& empty) {
-    if (extension == ".json") {
-      load_json(path, empty);
-    } else if (extension == ".obj" || extension == ".gltf" || extension == ".glb") {
-      load_mesh_file(path, empty);
-    } else {
-      throw Error(ErrorCode::bad_input,
-                  path + ": not a kind of scene that psf reads (.json, .obj, .gltf, .glb)");
-    }
+    empty.moment = moment;
+    load_file(path, empty);
   });
   check_scale(path, scene);
   scene.name = fs::path(path).filename().string();
   scale_intensities(scene);
+  Motion motion;
+  if (!scene.animation.empty()) {
+    const auto places_at = [&](double frame) {
+      return load_again(path, scene, frame, Moment::Parts::places);
+    };
+    // So that all frames have the same one.
+    if (scene.cameras.empty() && moment.frame != 0) {
+      scene.cameras.push_back(automatic_camera(places_at(0)));
+    }
+    motion = find_motion(overrides, scene, places_at);
+    if (rest) keep_rest(scene, moment.frame == 0 ? scene : places_at(0));
+  }
   validate(path, scene);  // first: the automatic camera needs finite geometry
   note_lost_digits(path, scene);
   apply_overrides(overrides, scene);
+  move_cameras(overrides, motion, scene);
   split_large_triangles(scene);
   check_large_spheres(path, scene);
   scene.hash = hash_of(scene);
   return scene;
+}
+
+std::vector<Camera> cameras_at(const std::string& path, const SceneOverrides& overrides,
+                               const Scene& scene, double frame) {
+  if (scene.animation.empty()) return scene.cameras;
+  Scene other = load_again(path, scene, frame, Moment::Parts::cameras);
+  if (other.cameras.empty()) return scene.cameras;
+  override_cameras(overrides, other);
+  return other.cameras;
 }
 
 }  // namespace psf::render

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "render/scene/scene.h"
 
@@ -22,6 +23,7 @@ struct SceneOverrides {
   std::optional<Vec3> sun_direction;   // toward the sun
   std::optional<Rgb> sun;              // irradiance on a facing surface
   float sun_angle = 0.00465f;          // angular radius, radians
+  std::optional<Shutter> shutter;      // of every camera
 };
 
 // Loads a scene by its file's extension, applies the overrides, validates the scene and computes
@@ -30,7 +32,15 @@ struct SceneOverrides {
 // and place (line, JSON path), Error{usage} naming the option of a senseless override, Error{limit}
 // for more than 2^27 triangles and spheres, for a scene that is too large, too small or, for its
 // size, too far from the origin, and for a sphere whose radius is 8,192 times a camera's distance.
-[[nodiscard]] Scene load_scene(const std::string& path, const SceneOverrides& overrides = {});
+// Where something moves while a shutter is open, the scene is loaded at several moments: shapes and
+// cameras get their motion. `rest`: also the positions at frame 0.
+[[nodiscard]] Scene load_scene(const std::string& path, const SceneOverrides& overrides = {},
+                               const Moment& moment = {}, bool rest = false);
+
+// The cameras of another frame of a scene that load_scene() gave, with the same arguments.
+[[nodiscard]] std::vector<Camera> cameras_at(const std::string& path,
+                                             const SceneOverrides& overrides, const Scene& scene,
+                                             double frame);
 
 // The precision of the scene in a dump, whose positions are floats in world units.
 struct WorldDigits {

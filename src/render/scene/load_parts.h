@@ -83,6 +83,10 @@ void load_gltf(const std::string& path, Scene& scene);
 // Calls load_obj() or load_gltf() by the file's extension; throws Error{bad_input} for any other.
 void load_mesh_file(const std::string& path, Scene& scene);
 
+// The camera of a scene that has none.
+[[nodiscard]] Camera automatic_camera(const Scene& scene);
+// Applies the command line's changes to the cameras, and checks them.
+void override_cameras(const SceneOverrides& overrides, Scene& scene);
 // Adds a camera that sees everything where the scene has none, then applies the command line's
 // changes. Throws Error{usage} naming the option for values that make no sense.
 void apply_overrides(const SceneOverrides& overrides, Scene& scene);

@@ -33,60 +33,6 @@ void check_radiance(const Rgb& c, const char* option) {
   }
 }
 
-// Looks along -z at the middle of the scene, from far enough to see the sphere around its bounding
-// box.
-Camera camera_for(const Scene& scene) {
-  Imath::Box3f box;
-  for (const Mesh& mesh : scene.meshes) {
-    for (const Vec3& p : mesh.positions) box.extendBy(p);
-  }
-  for (const Sphere& sphere : scene.spheres) {
-    box.extendBy(sphere.center - Vec3(sphere.radius));
-    box.extendBy(sphere.center + Vec3(sphere.radius));
-  }
-  Camera camera;
-  camera.name = "automatic";
-  camera.target = box.center();
-  const float distance = 1.02f * box.size().length() / 2 / std::sin(camera.fov / 2);
-  camera.eye = camera.target + Vec3(0, 0, distance);
-  camera.focus_distance = distance;
-  return camera;
-}
-
-void override_cameras(const SceneOverrides& o, Scene& scene) {
-  if (o.eye || o.target || o.up) {
-    // One pose on the command line is one camera: the first of the scene gives what is not said.
-    scene.cameras.resize(1);
-    Camera& camera = scene.cameras[0];
-    if (o.eye) camera.eye = scene.space.local(*o.eye);
-    if (o.target) camera.target = scene.space.local(*o.target);
-    if (o.up) camera.up = unit(*o.up, "--up");
-  }
-  if (o.fov && !(*o.fov > 0 && *o.fov < 180)) {
-    misuse(fmt::format("--fov {}: expected degrees between 0 and 180", *o.fov));
-  }
-  if (o.size) {
-    for (const float side : {o.size->x, o.size->y}) {
-      if (!(side >= 1 && side <= kMaxSide) || side != std::floor(side)) {
-        misuse(fmt::format("--size {}x{}: expected whole numbers of pixels from 1 to {}", o.size->x,
-                           o.size->y, kMaxSide));
-      }
-    }
-  }
-  for (Camera& camera : scene.cameras) {
-    if (o.size) {
-      camera.width = static_cast<std::uint32_t>(o.size->x);
-      camera.height = static_cast<std::uint32_t>(o.size->y);
-    }
-    if (o.fov) {
-      camera.fov = *o.fov * kRadians;
-    } else if (camera.vertical_fov > 0 && camera.height > 0) {
-      const float aspect = static_cast<float>(camera.width) / static_cast<float>(camera.height);
-      camera.fov = 2 * std::atan(std::tan(camera.vertical_fov / 2) * aspect);
-    }
-  }
-}
-
 void override_lights(const SceneOverrides& o, Scene& scene) {
   if (o.sky || o.sky_map) {
     scene.environment = Environment{};
@@ -169,13 +115,68 @@ bool has_light(const Scene& scene) {
 
 }  // namespace
 
+// Looks along -z at the middle of the scene, from far enough to see the sphere around its bounding
+// box.
+Camera automatic_camera(const Scene& scene) {
+  Imath::Box3f box;
+  for (const Mesh& mesh : scene.meshes) {
+    for (const Vec3& p : mesh.positions) box.extendBy(p);
+  }
+  for (const Sphere& sphere : scene.spheres) {
+    box.extendBy(sphere.center - Vec3(sphere.radius));
+    box.extendBy(sphere.center + Vec3(sphere.radius));
+  }
+  Camera camera;
+  camera.name = "automatic";
+  camera.target = box.center();
+  const float distance = 1.02f * box.size().length() / 2 / std::sin(camera.fov / 2);
+  camera.eye = camera.target + Vec3(0, 0, distance);
+  camera.focus_distance = distance;
+  return camera;
+}
+
+void override_cameras(const SceneOverrides& o, Scene& scene) {
+  if (o.eye || o.target || o.up) {
+    // One pose on the command line is one camera: the first of the scene gives what is not said.
+    scene.cameras.resize(1);
+    Camera& camera = scene.cameras[0];
+    if (o.eye) camera.eye = scene.space.local(*o.eye);
+    if (o.target) camera.target = scene.space.local(*o.target);
+    if (o.up) camera.up = unit(*o.up, "--up");
+  }
+  if (o.fov && !(*o.fov > 0 && *o.fov < 180)) {
+    misuse(fmt::format("--fov {}: expected degrees between 0 and 180", *o.fov));
+  }
+  if (o.size) {
+    for (const float side : {o.size->x, o.size->y}) {
+      if (!(side >= 1 && side <= kMaxSide) || side != std::floor(side)) {
+        misuse(fmt::format("--size {}x{}: expected whole numbers of pixels from 1 to {}", o.size->x,
+                           o.size->y, kMaxSide));
+      }
+    }
+  }
+  for (Camera& camera : scene.cameras) {
+    if (o.size) {
+      camera.width = static_cast<std::uint32_t>(o.size->x);
+      camera.height = static_cast<std::uint32_t>(o.size->y);
+    }
+    if (o.fov) {
+      camera.fov = *o.fov * kRadians;
+    } else if (camera.vertical_fov > 0 && camera.height > 0) {
+      const float aspect = static_cast<float>(camera.width) / static_cast<float>(camera.height);
+      camera.fov = 2 * std::atan(std::tan(camera.vertical_fov / 2) * aspect);
+    }
+    if (o.shutter) camera.shutter = *o.shutter;
+  }
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i)
+    check_camera(scene.cameras[i], i, scene.name);
+}
+
 void apply_overrides(const SceneOverrides& overrides, Scene& scene) {
-  if (scene.cameras.empty()) scene.cameras.push_back(camera_for(scene));
+  if (scene.cameras.empty()) scene.cameras.push_back(automatic_camera(scene));
   override_cameras(overrides, scene);
   override_lights(overrides, scene);
   note_environment(scene);
-  for (std::size_t i = 0; i < scene.cameras.size(); ++i)
-    check_camera(scene.cameras[i], i, scene.name);
   if (!has_light(scene)) {
     scene.warnings.push_back(scene.name +
                              ": nothing in the scene gives light; --sky and --sun add some");

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,11 @@ struct Material {
   int emission_texture = kNone;
 };
 
+// A mesh at a moment.
+struct MeshStep {
+  std::vector<Vec3> positions, normals;  // as those of the mesh
+};
+
 // Triangles with one material. Counter-clockwise seen from the front.
 struct Mesh {
   std::string name;
@@ -57,6 +63,16 @@ struct Mesh {
   std::vector<Vec2> uvs;      // empty, or one per position
   std::vector<std::array<std::uint32_t, 3>> triangles;
   int material = 0;
+  // Where the mesh moves while the shutter is open: at even steps of Scene::shutter from begin to
+  // end, straight on between them. Empty: it stands still.
+  std::vector<MeshStep> motion;
+  std::vector<Vec3> rest;  // the positions at frame 0; empty: those of now
+};
+
+struct Ball {
+  Vec3 center{0, 0, 0};
+  float radius = 1;
+  bool operator==(const Ball&) const = default;
 };
 
 struct Sphere {
@@ -64,6 +80,8 @@ struct Sphere {
   Vec3 center{0, 0, 0};
   float radius = 1;  // front is outside
   int material = 0;
+  std::vector<Ball> motion{};  // as that of a mesh
+  std::optional<Ball> rest{};  // at frame 0
 };
 
 enum class LightKind : std::uint8_t { point, directional, spot };
@@ -91,6 +109,21 @@ struct Environment {
 // Most pixels of a side of a picture, so that the number of a pixel fits 32 bits.
 inline constexpr std::uint32_t kMaxSide = 65535;
 
+// From when to when light comes in, in frames behind the camera's frame.
+struct Shutter {
+  float open = 0, close = 0;
+  [[nodiscard]] bool blurs() const { return close > open; }
+};
+
+// What of a camera can move.
+struct CameraPose {
+  Vec3 eye{0, 0, 0}, target{0, 0, -1}, up{0, 1, 0};
+  float fov = 0.7f, focus_distance = 1;
+  bool operator==(const CameraPose&) const = default;
+};
+// In a straight line, up turned.
+[[nodiscard]] CameraPose mix(const CameraPose& a, const CameraPose& b, float share);
+
 struct Camera {
   std::string name;
   Vec3 eye{0, 0, 0}, target{0, 0, -1}, up{0, 1, 0};
@@ -99,6 +132,22 @@ struct Camera {
   std::uint32_t width = 512, height = 512;
   float lens_radius = 0;     // 0: pinhole
   float focus_distance = 1;  // along the view axis, used where lens_radius > 0
+  Shutter shutter;
+  std::vector<CameraPose> motion;  // as that of a mesh; the members above are those of the frame
+
+  [[nodiscard]] CameraPose pose() const { return {eye, target, up, fov, focus_distance}; }
+  void set_pose(const CameraPose& pose);
+};
+
+// What a scene is loaded for.
+struct Moment {
+  double frame = 0;
+  double fps = 24;  // frames a second, for files that count in seconds
+  enum class Parts : std::uint8_t {
+    all,
+    places,  // where everything is: no pictures
+    cameras  // these alone
+  } parts = Parts::all;
 };
 
 // All coordinates and lengths are those of `space`, which is the world except for scenes that are
@@ -117,6 +166,10 @@ struct Scene {
   std::vector<Camera> cameras;
   std::vector<std::string> files;     // other files that were read; some may occur more than once
   std::vector<std::string> warnings;  // what was repaired or left out while loading, one line each
+  Moment moment;
+  // What the file says of movement, for the hash; empty: nothing in it ever moves.
+  std::vector<double> animation;
+  Shutter shutter;  // around those of all cameras; rays have time 0 where it opens, 1 at its end
   Space space;
   Space wanted;  // where `exact` is set: the space in which the scene must be loaded instead
 };

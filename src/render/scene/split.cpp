@@ -69,13 +69,19 @@ class Splitter {
     const auto [entry, is_new] =
         middles_.try_emplace(std::minmax(i, j), static_cast<std::uint32_t>(mesh_.positions.size()));
     if (!is_new) return entry->second;
-    mesh_.positions.push_back(mesh_.positions[i] * 0.5f + mesh_.positions[j] * 0.5f);
-    if (!mesh_.normals.empty()) {
-      const Vec3 sum = mesh_.normals[i] + mesh_.normals[j];
-      mesh_.normals.push_back(length_sq(sum) > 1e-12f ? sum.normalized() : mesh_.normals[i]);
-    }
+    add_middle(mesh_.positions, mesh_.normals, i, j);
+    for (MeshStep& step : mesh_.motion) add_middle(step.positions, step.normals, i, j);
+    if (!mesh_.rest.empty()) mesh_.rest.push_back(mesh_.rest[i] * 0.5f + mesh_.rest[j] * 0.5f);
     if (!mesh_.uvs.empty()) mesh_.uvs.push_back((mesh_.uvs[i] + mesh_.uvs[j]) * 0.5f);
     return entry->second;
+  }
+
+  static void add_middle(std::vector<Vec3>& positions, std::vector<Vec3>& normals, std::uint32_t i,
+                         std::uint32_t j) {
+    positions.push_back(positions[i] * 0.5f + positions[j] * 0.5f);
+    if (normals.empty()) return;
+    const Vec3 sum = normals[i] + normals[j];
+    normals.push_back(length_sq(sum) > 1e-12f ? sum.normalized() : normals[i]);
   }
 
   void cut(std::array<std::uint32_t, 3> t, int cuts) {

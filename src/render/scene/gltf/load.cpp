@@ -12,8 +12,12 @@ namespace {
 
 constexpr int kMaxNodeDepth = 512;  // deepest nesting of nodes
 
-Imath::M44d local_matrix(const JsonCursor& node) {
+Imath::M44d local_matrix(const GltfLoad& load, const JsonCursor& node, std::uint64_t index) {
   if (const auto matrix = node.find("matrix")) {
+    if (load.tracks.count(index) != 0)
+      matrix->fail(
+          "a node that an animation moves has no matrix; export it with a translation, "
+          "rotation and scale");
     // glTF stores columns of a matrix for column vectors: the same order as our rows for row
     // vectors.
     const auto v = matrix->numbers(16);
@@ -25,15 +29,17 @@ Imath::M44d local_matrix(const JsonCursor& node) {
   }
   const auto scale = node.find("scale"), rotation = node.find("rotation"),
              translation = node.find("translation");
-  std::array<double, 4> turn = {0, 0, 0, 1};
+  GltfNodePose pose;
   if (rotation) {
     const auto v = rotation->numbers(4);
-    std::copy(v.begin(), v.end(), turn.begin());
-    if (turn == std::array<double, 4>{})
+    std::copy(v.begin(), v.end(), pose.rotation.begin());
+    if (pose.rotation == std::array<double, 4>{})
       rotation->expected("a quaternion, four numbers that are not all zero");
   }
-  return gltf_matrix(scale ? scale->vec3d() : Imath::V3d(1), turn,
-                     translation ? translation->vec3d() : Imath::V3d(0));
+  if (scale) pose.scale = scale->vec3d();
+  if (translation) pose.translation = translation->vec3d();
+  animate_node(load, index, pose);
+  return gltf_matrix(pose.scale, pose.rotation, pose.translation);
 }
 
 // Whether all of a node is in one point.
@@ -65,14 +71,15 @@ void add_node(GltfLoad& load, const JsonCursor& index, const Imath::M44d& parent
   load.check_keys(node, {"camera", "children", "skin", "matrix", "mesh", "rotation", "scale",
                          "translation", "weights"});
   if (is_hidden(load, node)) return;
-  const Imath::M44d to_scene = local_matrix(node) * parent;
+  const Imath::M44d to_scene = local_matrix(load, node, index.whole()) * parent;
   if (is_point(to_scene))
     return load.leave_out("nodes scaled to nothing are left out", gltf_place(node));
   const auto number = static_cast<std::size_t>(index.whole());
   const std::string name = gltf_name(node, "node", number);
   if (node.find("skin"))
     load.leave_out("skins are left out, meshes are as modelled", gltf_place(node));
-  if (const auto mesh = node.find("mesh")) {
+  const bool alone = load.scene.moment.parts == Moment::Parts::cameras;
+  if (const auto mesh = node.find("mesh"); mesh && !alone) {
     std::vector<Imath::M44d> placements{to_scene};
     if (const auto instancing = find_extension(node, "EXT_mesh_gpu_instancing")) {
       placements = gltf_instances(load, *instancing);
@@ -129,8 +136,7 @@ void load_gltf(const std::string& path, Scene& scene) {
                          "extensionsUsed", "extensionsRequired", "images", "materials", "meshes",
                          "nodes", "samplers", "scene", "scenes", "skins", "textures"});
   check_gltf_extensions(load);
-  if (const auto animations = root.find("animations"); animations && animations->size() > 0)
-    load.leave_out("animations are left out, nodes stand as they are", "");
+  read_gltf_animations(load);
   add_gltf_materials(load);
   each_root(load, [&](const JsonCursor& node) { add_node(load, node, scene.space.to_local(), 0); });
   load.tell();

@@ -1,6 +1,7 @@
 // The parts of the glTF loader.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -27,6 +28,15 @@ struct GltfCoordinates {
   bool operator==(const GltfCoordinates&) const = default;
 };
 
+// What an animation says of one property of a node.
+struct GltfTrack {
+  enum class Kind : std::uint8_t { linear, step, cubic } kind = Kind::linear;
+  std::size_t components = 3;
+  std::vector<double> times;  // seconds, ascending
+  // Of each key; of a cubic track the tangent before it, the value and the tangent behind it.
+  std::vector<float> values;
+};
+
 // A glTF file while it is read. Errors name the file and a JSON pointer in it.
 struct GltfLoad {
   std::string path;
@@ -41,6 +51,8 @@ struct GltfLoad {
   int default_material = kNone;  // for primitives without a material; made when first needed
   CopyCount copies;
   std::set<std::uint64_t> nodes;  // nodes added so far
+  // Translation, rotation and scale of nodes that move.
+  std::map<std::uint64_t, std::array<std::optional<GltfTrack>, 3>> tracks;
 
   GltfLoad(std::string file, Scene& target) : path(std::move(file)), scene(target) {}
 
@@ -104,6 +116,16 @@ void check_gltf_extensions(GltfLoad& load);
 [[nodiscard]] int gltf_texture(GltfLoad& load, const JsonCursor& info, TextureUse use,
                                const std::string& wanted_by);
 [[nodiscard]] GltfCoordinates gltf_coordinates(GltfLoad& load, const JsonCursor& info);
+
+// Reads the animations of the file into GltfLoad::tracks.
+void read_gltf_animations(GltfLoad& load);
+struct GltfNodePose {
+  Imath::V3d scale{1, 1, 1};
+  std::array<double, 4> rotation{0, 0, 0, 1};  // x, y, z, w
+  Imath::V3d translation{0, 0, 0};
+};
+// Sets what of the node moves to where it is at the scene's frame.
+void animate_node(const GltfLoad& load, std::uint64_t node, GltfNodePose& pose);
 
 // Adds all materials of the file, in its order, with their textures.
 void add_gltf_materials(GltfLoad& load);

@@ -71,6 +71,7 @@ int load_image(GltfLoad& load, const JsonCursor& index, TextureUse use,
 
 int gltf_texture(GltfLoad& load, const JsonCursor& info, TextureUse use,
                  const std::string& wanted_by) {
+  if (load.scene.moment.parts != Moment::Parts::all) return kNone;
   const JsonCursor texture = load.element("textures", info.at("index"), "texture");
   load.check_keys(texture, {"sampler", "source"});
   if (const auto sampler = texture.find("sampler")) note_sampler(load, *sampler, wanted_by);

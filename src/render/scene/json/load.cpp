@@ -9,15 +9,27 @@
 namespace psf::render {
 namespace {
 
-Camera read_camera(const JsonCursor& json, const Space& space) {
-  json.check_keys({"name", "eye", "target", "up", "fov", "size", "lens_radius", "focus_distance"});
+constexpr Range kShutterRange{-1, 1, "of frames in [-1, 1]"};
+
+Shutter read_shutter(const JsonCursor& json) {
+  const auto items = json.items();
+  if (items.size() != 2) json.expected("an array of two numbers of frames, open and close");
+  const Shutter shutter{items[0].number(kShutterRange), items[1].number(kShutterRange)};
+  if (shutter.close < shutter.open) json.fail("the shutter closes before it opens");
+  return shutter;
+}
+
+Camera read_camera(const JsonCursor& json, Scene& scene) {
+  const Space& space = scene.space;
+  json.check_keys({"name", "eye", "target", "up", "fov", "size", "lens_radius", "focus_distance",
+                   "shutter", "keyframes"});
   Camera camera;
   if (const auto name = json.find("name")) camera.name = name->text();
   camera.eye = space.local(json.at("eye").vec3d());
   camera.target = space.local(json.at("target").vec3d());
   if (const auto up = json.find("up")) camera.up = up->direction();
   if (const auto fov = json.find("fov")) {
-    camera.fov = fov->number({0.01, 179.99, "of degrees in (0, 180)"}) * kRadians;
+    camera.fov = fov->number(kFovRange) * kRadians;
   }
   if (const auto size = json.find("size")) {
     const auto items = size->items();
@@ -27,9 +39,11 @@ Camera read_camera(const JsonCursor& json, const Space& space) {
   }
   if (const auto radius = json.find("lens_radius"))
     camera.lens_radius = space.local_length(radius->real(kNonNegative));
-  camera.focus_distance = (camera.target - camera.eye).length();
-  if (const auto focus = json.find("focus_distance"))
-    camera.focus_distance = space.local_length(focus->real(kPositive));
+  if (const auto shutter = json.find("shutter")) camera.shutter = read_shutter(*shutter);
+  const auto focus = json.find("focus_distance"), keys = json.find("keyframes");
+  if (focus) camera.focus_distance = space.local_length(focus->real(kPositive));
+  const bool focused = keys && move_camera(*keys, scene, camera);
+  if (!focus && !focused) camera.focus_distance = (camera.target - camera.eye).length();
   return camera;
 }
 
@@ -105,7 +119,8 @@ void load_json(const std::string& path, Scene& scene) {
   root.check_keys({"cameras", "environment", "media", "materials", "shapes", "lights"});
   JsonLoad load(scene);
   for (const JsonCursor& camera : root.items("cameras"))
-    scene.cameras.push_back(read_camera(camera, scene.space));
+    scene.cameras.push_back(read_camera(camera, scene));
+  if (scene.moment.parts == Moment::Parts::cameras) return;
   if (const auto environment = root.find("environment")) {
     scene.environment = read_environment(*environment, load);
   }

@@ -37,9 +37,15 @@ void read_material(const JsonCursor& json, JsonLoad& load);
 using Placement = Imath::M44d;
 [[nodiscard]] Placement product(const Placement& a, const Placement& b, bool exact);
 
-// The placements of a shape's copies, at least one, by its keys "transform" and "repeat". Throws
-// Error{limit} where there are more than kMaxCopies.
-[[nodiscard]] std::vector<Placement> read_placements(const JsonCursor& json, bool exact);
+// The placements of a shape's copies, at least one, by its keys "transform", "keyframes" and
+// "repeat". Throws Error{limit} where there are more than kMaxCopies.
+[[nodiscard]] std::vector<Placement> read_placements(const JsonCursor& json, Scene& scene);
+
+constexpr Range kFovRange{0.01, 179.99, "of degrees in (0, 180)"};
+// These read "keyframes": the placement, and the pose of the camera, at the scene's frame. What they
+// read goes into Scene::animation. The second returns whether a key says where it is in focus.
+[[nodiscard]] Placement read_keyed_placement(const JsonCursor& json, Scene& scene);
+bool move_camera(const JsonCursor& json, Scene& scene, Camera& camera);
 
 // Reads a shape and adds its copies at each of `placements`, which are the copies of the
 // surrounding group. `depth`: number of groups around the shape.

@@ -160,11 +160,15 @@ void add_mesh_file(const JsonCursor& json, int material, bool flipped,
   const JsonCursor file = json.at("file");
   Scene& scene = load.scene;
   Scene part;
+  part.moment = scene.moment;
   try {
     const std::string path = find_file(file.file(), file.text());
     scene.files.push_back(path);
     if (scene.space.exact) {
-      part = load_fitting(path, [&](Scene& empty) { load_mesh_file(path, empty); });
+      part = load_fitting(path, [&](Scene& empty) {
+        empty.moment = scene.moment;
+        load_mesh_file(path, empty);
+      });
     } else {
       load_mesh_file(path, part);
       if (fitting_space(part).exact) scene.wanted.exact = true;
@@ -194,6 +198,7 @@ void add_mesh_file(const JsonCursor& json, int material, bool flipped,
     add_mesh(json, mesh, of_part, load);
   }
   scene.files.insert(scene.files.end(), part.files.begin(), part.files.end());
+  scene.animation.insert(scene.animation.end(), part.animation.begin(), part.animation.end());
   for (std::string& warning : part.warnings) scene.warnings.push_back(std::move(warning));
 }
 
@@ -211,11 +216,13 @@ void check_shape_keys(const JsonCursor& json, std::size_t kind, bool from_file) 
       {"profile", "segments"},
       {"file", "positions", "triangles", "normals", "uvs"},
       {"from", "to", "radius", "to_radius", "segments", "caps"}};
-  std::vector<std::string_view> known = {"shape", "name", "transform", "repeat"};
+  std::vector<std::string_view> known = {"shape", "name", "transform", "keyframes", "repeat"};
   if (kind != group) known.push_back("material");
   if (kind != group && kind != sphere) known.insert(known.end(), {"flip", "uv_scale"});
   known.insert(known.end(), kKeys[kind].begin(), kKeys[kind].end());
-  if (from_file) known = {"shape", "name", "transform", "repeat", "material", "flip", "file"};
+  if (from_file) {
+    known = {"shape", "name", "transform", "keyframes", "repeat", "material", "flip", "file"};
+  }
   json.check_keys(known);
 }
 
@@ -275,7 +282,8 @@ void read_shape(const JsonCursor& json, const std::vector<Placement>& around, Js
   const bool from_file = kind == mesh_shape && json.find("file").has_value();
   check_shape_keys(json, kind, from_file);
   const bool exact = load.scene.space.exact;
-  std::vector<Placement> placements = combine(json, read_placements(json, exact), around, exact);
+  std::vector<Placement> placements =
+      combine(json, read_placements(json, load.scene), around, exact);
   if (kind == group) {
     if (depth == kMaxGroupDepth)
       json.fail(fmt::format("more than {} groups within groups", kMaxGroupDepth));

@@ -98,10 +98,14 @@ Placement product(const Placement& a, const Placement& b, bool exact) {
   return exact ? a * b : Placement(Mat4(a) * Mat4(b));
 }
 
-std::vector<Placement> read_placements(const JsonCursor& json, bool exact) {
+std::vector<Placement> read_placements(const JsonCursor& json, Scene& scene) {
+  const bool exact = scene.space.exact;
   std::vector<Placement> placements{Placement()};
   if (const auto transform = json.find("transform")) {
     placements[0] = read_transform(*transform, exact);
+  }
+  if (const auto keys = json.find("keyframes")) {
+    placements[0] = product(placements[0], read_keyed_placement(*keys, scene), exact);
   }
   const auto found = json.find("repeat");
   if (!found) return placements;
