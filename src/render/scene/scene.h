@@ -50,10 +50,30 @@ struct Mesh {
   int material = 0;
 };
 
+// A mesh of Scene::prototypes at a place, by p * placement. It emits nothing.
+struct Instance {
+  std::uint32_t prototype = 0;
+  Mat4 placement;
+};
+
 struct Sphere {
   std::string name;
   Vec3 center{0, 0, 0};
   float radius = 1;  // front is outside
+  int material = 0;
+};
+
+struct CurvePoint {
+  Vec3 position{0, 0, 0};
+  float radius = 0;
+};
+
+// Round curves with one material: each segment is the hull of the balls around two points. Front is
+// outside; they are neither glass nor lights.
+struct Curves {
+  std::string name;
+  std::vector<CurvePoint> points;
+  std::vector<std::uint32_t> segments;  // each from the point of this number to the next one
   int material = 0;
 };
 
@@ -101,7 +121,10 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<Material> materials;
   std::vector<Mesh> meshes;
+  std::vector<Mesh> prototypes;  // seen only where `instances` place them
+  std::vector<Instance> instances;
   std::vector<Sphere> spheres;
+  std::vector<Curves> curves;
   std::vector<Light> lights;
   Environment environment;
   std::vector<Camera> cameras;

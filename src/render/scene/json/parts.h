@@ -23,16 +23,22 @@ struct JsonLoad {
 
 // Reads one material of "materials"; its name must be new.
 void read_material(const JsonCursor& json, JsonLoad& load);
-// The index of the material that the key "material" names; kNone where the key is missing and
+// The index of the material that `key` names; kNone where the key is missing and
 // `required` is false.
-[[nodiscard]] int read_material_name(const JsonCursor& json, const Scene& scene, bool required);
+[[nodiscard]] int read_material_name(const JsonCursor& json, const Scene& scene, bool required,
+                                     std::string_view key = "material");
 
 // The transform of a shape, for row vectors, p * m. Unless Space::exact is set, its numbers, and
 // those of products, are rounded to float.
 using Placement = Imath::M44d;
 [[nodiscard]] Placement product(const Placement& a, const Placement& b, bool exact);
 
-// The placements of a shape's copies, at least one, by its keys "transform" and "repeat". Throws
+// Each of `inner` moved by each of `outer`. Throws Error{limit} where they are more than kMaxCopies.
+[[nodiscard]] std::vector<Placement> combine(const JsonCursor& json,
+                                             const std::vector<Placement>& inner,
+                                             const std::vector<Placement>& outer, bool exact);
+
+// The placements of a shape's copies, at least one, by "transform", "repeat" and "scatter". Throws
 // Error{limit} where there are more than kMaxCopies.
 [[nodiscard]] std::vector<Placement> read_placements(const JsonCursor& json, bool exact);
 
@@ -40,5 +46,19 @@ using Placement = Imath::M44d;
 // surrounding group. `depth`: number of groups around the shape.
 void read_shape(const JsonCursor& json, const std::vector<Placement>& placements, JsonLoad& load,
                 int depth = 0);
+
+// Adds the copies of `mesh`, and counts them; errors name the shape.
+void add_mesh(const JsonCursor& json, const Mesh& mesh, const std::vector<Placement>& placements,
+              JsonLoad& load);
+
+// Shapes that are grown from a seed, and curves (`hairball`: grown too).
+void add_curves(const JsonCursor& json, bool hairball, const std::string& name, int material,
+                const std::vector<Placement>& placements, JsonLoad& load);
+void add_tree(const JsonCursor& json, const std::string& name, int material,
+              const std::vector<Placement>& placements, JsonLoad& load);
+[[nodiscard]] Mesh read_noise_sphere(const JsonCursor& json);
+[[nodiscard]] Mesh read_tuft(const JsonCursor& json);
+// The placements of the key "scatter".
+[[nodiscard]] std::vector<Placement> read_scatter(const JsonCursor& json);
 
 }  // namespace psf::render
