@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "core/error.h"
 
@@ -32,15 +33,14 @@ const char* describe(RTCError error) {
 
 Accel::Accel(const Scene& scene) : device_(rtcNewDevice(nullptr)) {
   check_embree(device_.get(), "no device");
-  scene_.reset(rtcNewScene(device_.get()));
-  check_embree(device_.get(), "no scene");
-  // Robust: no ray passes between two triangles that share an edge.
-  rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(scene_.get(), RTC_BUILD_QUALITY_HIGH);
+  scene_ = new_scene();
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    add_mesh(scene.meshes[m], static_cast<unsigned>(m));
+    add_mesh(scene_.get(), scene.meshes[m], static_cast<unsigned>(m));
   }
   add_spheres(scene.spheres, static_cast<unsigned>(scene.meshes.size()));
+  first_instance_ = static_cast<unsigned>(scene.meshes.size()) + 1;
+  for (const Curves& curves : scene.curves) add_curves(curves, first_instance_++);
+  add_instances(scene);
   rtcCommitScene(scene_.get());
   check_embree(device_.get(), "build");
 
@@ -54,7 +54,55 @@ Accel::Accel(const Scene& scene) : device_(rtcNewDevice(nullptr)) {
   }
 }
 
-void Accel::add_mesh(const Mesh& mesh, unsigned id) {
+void Accel::add_curves(const Curves& curves, unsigned id) {
+  if (curves.segments.empty()) return;
+  static_assert(sizeof(CurvePoint) == 16);
+  const EmbreeGeometry geometry(
+      rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE));
+  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                             curves.points.data(), 0, sizeof(CurvePoint), curves.points.size());
+  rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
+                             curves.segments.data(), 0, sizeof(curves.segments[0]),
+                             curves.segments.size());
+  rtcCommitGeometry(geometry.get());
+  rtcAttachGeometryByID(scene_.get(), geometry.get(), id);
+  check_embree(device_.get(), fmt::format("curves '{}'", curves.name));
+}
+
+EmbreeScene Accel::new_scene() const {
+  EmbreeScene scene(rtcNewScene(device_.get()));
+  check_embree(device_.get(), "no scene");
+  // Robust: no ray passes between two triangles that share an edge.
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
+  return scene;
+}
+
+void Accel::add_instances(const Scene& scene) {
+  // Each scene of a prototype lives on in the instances that show it.
+  std::vector<EmbreeScene> shown;
+  for (const Mesh& prototype : scene.prototypes) {
+    shown.push_back(new_scene());
+    add_mesh(shown.back().get(), prototype, 0);
+    rtcCommitScene(shown.back().get());
+    check_embree(device_.get(), fmt::format("mesh '{}'", prototype.name));
+  }
+  unsigned id = first_instance_;
+  for (const Instance& instance : scene.instances) {
+    const EmbreeGeometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
+    rtcSetGeometryInstancedScene(geometry.get(), shown[instance.prototype].get());
+    std::array<float, 12> placement;
+    for (std::size_t k = 0; k < placement.size(); ++k) {
+      placement[k] = instance.placement[static_cast<int>(k / 3)][static_cast<int>(k % 3)];
+    }
+    rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, placement.data());
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometryByID(scene_.get(), geometry.get(), id++);
+  }
+  check_embree(device_.get(), "instances");
+}
+
+void Accel::add_mesh(RTCScene target, const Mesh& mesh, unsigned id) {
   if (mesh.triangles.empty()) return;
   const EmbreeGeometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
   const std::size_t count = mesh.positions.size();
@@ -78,7 +126,7 @@ void Accel::add_mesh(const Mesh& mesh, unsigned id) {
                              mesh.triangles.data(), 0, sizeof(mesh.triangles[0]),
                              mesh.triangles.size());
   rtcCommitGeometry(geometry.get());
-  rtcAttachGeometryByID(scene_.get(), geometry.get(), id);
+  rtcAttachGeometryByID(target, geometry.get(), id);
   check_embree(device_.get(), fmt::format("mesh '{}'", mesh.name));
 }
 

@@ -13,12 +13,17 @@ namespace psf::render {
 
 // For `geometry` < meshes.size(), mesh number `geometry` was hit: `primitive` is the triangle, u
 // and v are the barycentric weights of its second and third corner. For `geometry` == meshes.size()
-// a sphere was hit, and `primitive` is its number.
+// a sphere was hit, and `primitive` is its number; above, curves number
+// `geometry` - meshes.size() - 1, of which `primitive` is the segment. Where `instance` is the number of one, the
+// triangle is one of its prototype, and `normal` is not in the scene's space.
 struct Hit {
+  static constexpr std::uint32_t kNoInstance = RTC_INVALID_GEOMETRY_ID;
   float distance = std::numeric_limits<float>::infinity();
   float u = 0, v = 0;
   std::uint32_t geometry = RTC_INVALID_GEOMETRY_ID, primitive = 0;
   Vec3 normal{0, 0, 0};  // Embree's geometric normal, not of unit length
+  std::uint32_t instance = kNoInstance;
+  Vec3 place{0, 0, 0};  // on the ray, with errors that grow with the distance
 };
 
 class Accel {
@@ -41,6 +46,9 @@ class Accel {
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     hit = {query.ray.tfar,   query.hit.u,      query.hit.v,
            query.hit.geomID, query.hit.primID, {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z}};
+    hit.place = origin + direction * hit.distance;
+    if (query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID)
+      hit.instance = query.hit.instID[0] - first_instance_;
     return true;
   }
 
@@ -79,11 +87,16 @@ class Accel {
     float x, y, z, radius;
   };
 
-  void add_mesh(const Mesh& mesh, unsigned id);
+  // To `target`, under the number `id`.
+  void add_mesh(RTCScene target, const Mesh& mesh, unsigned id);
   void add_spheres(const std::vector<Sphere>& spheres, unsigned id);
+  void add_curves(const Curves& curves, unsigned id);
+  void add_instances(const Scene& scene);
+  [[nodiscard]] EmbreeScene new_scene() const;
 
   EmbreeDevice device_;
   EmbreeScene scene_;
+  unsigned first_instance_ = 0;  // Embree's number of instance 0
   std::vector<Point> points_;
   Vec3 center_{0, 0, 0};
   float radius_ = 1;

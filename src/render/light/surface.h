@@ -14,7 +14,8 @@ struct Surface {
   Vec3 position;
   Vec3 geometric_normal;  // unit, on the side that the ray came from
   Vec3 normal;   // unit shading normal on that side, never facing away from the ray's origin
-  Vec2 uv;       // the mesh's, else barycentric; spheres: longitude and latitude, +y up
+  Vec2 uv;       // the mesh's, else barycentric; spheres: longitude and latitude, +y up;
+                 // curves: u along the segment
   float offset;  // distance from the surface at which rays start, in the unit of the scene's space
   int material;  // index in Scene::materials
   int emitter;   // number of its light; kNone: it emits nothing
@@ -23,6 +24,7 @@ struct Surface {
   // Area of the triangle where it moves, now over that at the frame.
   float stretch = 1;
   Vec3 rest{0, 0, 0};  // the place of this point at frame 0, as far as the scene keeps it
+  bool on_curve = false;
 
   // The normal as it is shaded for whoever looks along the unit `direction` at this side: where it
   // would face away, it is bent just into sight.
@@ -75,8 +77,27 @@ class Shapes {
     int material, emitter;
     const Sphere* sphere;
   };
+  struct CurvesView {
+    const CurvePoint* points;
+    const std::uint32_t* segments;
+    int material;
+  };
+  struct InstanceView {
+    std::uint32_t prototype;
+    float offset;
+    Mat4 placement;
+    Mat4 normal_placement;  // of normals, up to their length
+  };
 
-  std::vector<MeshView> meshes_;
+  // Sets all but the sides, which depend on the direction; that is the normal of what has none.
+  static void on_mesh(const MeshView& mesh, const Hit& hit, const Vec3& direction, Surface& s);
+  void on_instance(const Hit& hit, const Vec3& direction, Surface& s) const;
+  void on_sphere(const Hit& hit, Surface& s) const;
+  static void on_curve(const CurvesView& curves, const Hit& hit, Surface& s);
+
+  std::vector<MeshView> meshes_, prototypes_;
+  std::vector<InstanceView> instances_;
+  std::vector<CurvesView> curves_;
   std::vector<SphereView> spheres_;
 };
 

@@ -235,6 +235,7 @@ void Transport::record_vertex(const Vertex& v, const Walk& walk, PathRecord& rec
   record.direction = v.out;
   record.material = static_cast<std::uint32_t>(v.surface.material);
   record.roughness = v.bsdf.least_roughness();
+  if (v.surface.on_curve) record.kind = VertexKind::curve;
   if (walk.trail == nullptr) return;
   tell(v, walk);
   walk.trail->select();

@@ -11,7 +11,8 @@
 namespace psf::render {
 
 void CopyCount::add(const JsonCursor& place, std::size_t primitives, std::size_t vertices,
-                    std::size_t copies) {
+                    std::size_t copies, bool instanced) {
+  if (instanced) return add(place, primitives + copies, vertices, 1);
   if (primitives > (kMaxPrimitives - primitives_) / copies) {
     throw Error(ErrorCode::limit,
                 fmt::format("{}: {} copies of {} triangles are more than psf takes ({} in a scene)",

@@ -9,10 +9,11 @@ namespace psf::render {
 
 class CopyCount {
  public:
-  // Counts `copies` of a shape, which become one mesh. Throws Error{limit} that names `place` where
-  // the scene has more triangles and spheres, or the mesh more vertices, than is allowed.
+  // Counts `copies` of a shape, which become one mesh, or instances, each of which counts as a
+  // triangle. Throws Error{limit} that names `place` where the scene has more triangles and
+  // spheres, or the mesh more vertices, than is allowed.
   void add(const JsonCursor& place, std::size_t primitives, std::size_t vertices,
-           std::size_t copies);
+           std::size_t copies, bool instanced = false);
 
  private:
   std::size_t primitives_ = 0;

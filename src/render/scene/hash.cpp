@@ -101,6 +101,12 @@ void add(Digest& digest, const Sphere& sphere) {
   if (!sphere.motion.empty()) digest.add_array(sphere.motion);
 }
 
+void add(Digest& digest, const Curves& curves) {
+  digest.add_array(curves.points);
+  digest.add_array(curves.segments);
+  digest.add(curves.material);
+}
+
 void add(Digest& digest, const Light& light) {
   digest.add(static_cast<int>(light.kind));
   digest.add(light.position);
@@ -139,6 +145,11 @@ std::string hash_of(const Scene& scene) {
   if (!scene.media.empty()) add_all(digest, scene.media);
   add_all(digest, scene.meshes);
   add_all(digest, scene.spheres);
+  if (!scene.instances.empty()) {
+    add_all(digest, scene.prototypes);
+    digest.add_array(scene.instances);
+  }
+  if (!scene.curves.empty()) add_all(digest, scene.curves);
   add_all(digest, scene.lights);
   digest.add(scene.environment.radiance);
   digest.add(scene.environment.texture);

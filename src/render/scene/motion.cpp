@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -38,6 +39,22 @@ void check_same_shapes(const Scene& scene, const Scene& other) {
       if (!is_finite(p) || !in_space(p)) fail_shape(scene, a.name, "it moves out of all bounds");
     }
   }
+}
+
+// Curves have no motion of their own, and instances none either: what keys move is no instance.
+void check_still(const Scene& a, const Scene& b, const char* remedy) {
+  const auto same_points = [](const Curves& one, const Curves& other) {
+    return one.points == other.points;
+  };
+  const auto same_placement = [](const Instance& one, const Instance& other) {
+    return one.placement == other.placement;
+  };
+  if (std::ranges::equal(a.curves, b.curves, same_points) &&
+      std::ranges::equal(a.instances, b.instances, same_placement)) {
+    return;
+  }
+  throw Error(ErrorCode::bad_input,
+              fmt::format("{}: curves move, which only meshes and spheres can {}", a.name, remedy));
 }
 
 bool bends(const Vec3& a, const Vec3& middle, const Vec3& b) {
@@ -82,6 +99,7 @@ Steps load_steps(const Scene& scene, const std::function<Scene(double frame)>& p
     const double open{scene.shutter.open}, close{scene.shutter.close};
     Scene step = places_at(scene.moment.frame + open + share * (close - open));
     check_same_shapes(scene, step);
+    check_still(scene, step, "while the shutter is open; close it");
     return step;
   };
   constexpr std::size_t kMiddle = (kSteps - 1) / 2;
@@ -156,6 +174,7 @@ void move_cameras(const SceneOverrides& overrides, const Motion& motion, Scene& 
 
 void keep_rest(Scene& scene, const Scene& at_rest) {
   if (&scene != &at_rest) check_same_shapes(scene, at_rest);
+  check_still(scene, at_rest, "where their rest positions are kept; leave that channel out");
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     Mesh& mesh = scene.meshes[m];
     const std::vector<Vec3>& rest = at_rest.meshes[m].positions;

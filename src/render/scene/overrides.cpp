@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "render/scene/copies.h"
 #include "render/scene/load_parts.h"
 
 namespace psf::render {
@@ -122,9 +123,22 @@ Camera automatic_camera(const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) {
     for (const Vec3& p : mesh.positions) box.extendBy(p);
   }
+  std::vector<Imath::Box3d> prototypes;
+  for (const Mesh& mesh : scene.prototypes) prototypes.push_back(bounds_of(mesh));
+  for (const Instance& instance : scene.instances) {
+    const Imath::Box3d placed = bounds_of(prototypes[instance.prototype], instance);
+    box.extendBy(Vec3(placed.min));
+    box.extendBy(Vec3(placed.max));
+  }
   for (const Sphere& sphere : scene.spheres) {
     box.extendBy(sphere.center - Vec3(sphere.radius));
     box.extendBy(sphere.center + Vec3(sphere.radius));
+  }
+  for (const Curves& curves : scene.curves) {
+    for (const CurvePoint& p : curves.points) {
+      box.extendBy(p.position - Vec3(p.radius));
+      box.extendBy(p.position + Vec3(p.radius));
+    }
   }
   Camera camera;
   camera.name = "automatic";

@@ -75,6 +75,12 @@ struct Ball {
   bool operator==(const Ball&) const = default;
 };
 
+// A mesh of Scene::prototypes at a place, by p * placement. It emits nothing.
+struct Instance {
+  std::uint32_t prototype = 0;
+  Mat4 placement;
+};
+
 struct Sphere {
   std::string name;
   Vec3 center{0, 0, 0};
@@ -82,6 +88,22 @@ struct Sphere {
   int material = 0;
   std::vector<Ball> motion{};  // as that of a mesh
   std::optional<Ball> rest{};  // at frame 0
+};
+
+struct CurvePoint {
+  Vec3 position{0, 0, 0};
+  float radius = 0;
+
+  bool operator==(const CurvePoint&) const = default;
+};
+
+// Round curves with one material: each segment is the hull of the balls around two points. Front is
+// outside; they are neither glass nor lights.
+struct Curves {
+  std::string name;
+  std::vector<CurvePoint> points;
+  std::vector<std::uint32_t> segments;  // each from the point of this number to the next one
+  int material = 0;
 };
 
 enum class LightKind : std::uint8_t { point, directional, spot };
@@ -160,7 +182,10 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Medium> media;
   std::vector<Mesh> meshes;
+  std::vector<Mesh> prototypes;  // seen only where `instances` place them
+  std::vector<Instance> instances;
   std::vector<Sphere> spheres;
+  std::vector<Curves> curves;
   std::vector<Light> lights;
   Environment environment;
   std::vector<Camera> cameras;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "render/scene/copies.h"
 #include "render/scene/load_parts.h"
 
 namespace psf::render {
@@ -45,7 +46,7 @@ double largest(const Imath::V3d& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-// The bounds of all triangles and spheres. Values that are not finite, and indices of no vertex,
+// The bounds of all triangles, instances, spheres and curves. Values that are not finite, and indices of no vertex,
 // are reported later.
 Imath::Box3d bounds_of(const Scene& scene) {
   Imath::Box3d box;
@@ -58,11 +59,24 @@ Imath::Box3d bounds_of(const Scene& scene) {
       }
     }
   }
+  std::vector<Imath::Box3d> prototypes;
+  for (const Mesh& mesh : scene.prototypes) prototypes.push_back(bounds_of(mesh));
+  for (const Instance& instance : scene.instances) {
+    const Imath::Box3d placed = bounds_of(prototypes[instance.prototype], instance);
+    if (is_finite(Vec3(placed.min)) && is_finite(Vec3(placed.max))) box.extendBy(placed);
+  }
   for (const Sphere& sphere : scene.spheres) {
     if (!is_finite(sphere.center) || !std::isfinite(sphere.radius)) continue;
     const Imath::V3d center(sphere.center), reach(double{sphere.radius});
     box.extendBy(center - reach);
     box.extendBy(center + reach);
+  }
+  for (const Curves& curves : scene.curves) {
+    for (const CurvePoint& p : curves.points) {
+      if (!is_finite(p.position) || !std::isfinite(p.radius)) continue;
+      box.extendBy(Imath::V3d(p.position) - Imath::V3d(double{p.radius}));
+      box.extendBy(Imath::V3d(p.position) + Imath::V3d(double{p.radius}));
+    }
   }
   return box;
 }
@@ -163,6 +177,13 @@ void note_lost_digits(const std::string& path, Scene& scene) {
     Imath::Box3d box;
     for (const Vec3& p : mesh.positions) box.extendBy(Imath::V3d(p));
     check("mesh", mesh.name, largest(box.size()), largest(box.center()));
+  }
+  std::vector<Imath::Box3d> prototypes;
+  for (const Mesh& mesh : scene.prototypes) prototypes.push_back(bounds_of(mesh));
+  for (const Instance& instance : scene.instances) {
+    const Imath::Box3d box = bounds_of(prototypes[instance.prototype], instance);
+    check("mesh", scene.prototypes[instance.prototype].name, largest(box.size()),
+          largest(box.center()));
   }
   for (const Sphere& sphere : scene.spheres) {
     check("sphere", sphere.name, 2 * double{sphere.radius}, largest(Imath::V3d(sphere.center)));

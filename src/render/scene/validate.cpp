@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "render/scene/copies.h"
 #include "render/scene/load_parts.h"
 
 namespace psf::render {
@@ -26,11 +27,11 @@ class Validation {
   Validation(const std::string& path, Scene& scene) : path_(path), scene_(scene) {}
 
   void run() {
-    if (scene_.meshes.empty() && scene_.spheres.empty())
-      fail("the scene has no shapes, there is nothing to render");
+    if (is_empty()) fail("the scene has no shapes, there is nothing to render");
     for (const Medium& medium : scene_.media) check(medium);
     for (Material& material : scene_.materials) check(material);
     for (Mesh& mesh : scene_.meshes) check(mesh);
+    for (Mesh& mesh : scene_.prototypes) check(mesh);
     if (dropped_ > 0) {
       warn(fmt::format(
           "{} of {} triangles have no area and are left out (the first is triangle {} of mesh {})",
@@ -41,13 +42,21 @@ class Validation {
                        bad_normals_));
     }
     std::erase_if(scene_.meshes, [](const Mesh& mesh) { return mesh.triangles.empty(); });
-    if (scene_.meshes.empty() && scene_.spheres.empty())
-      fail("no triangle of the scene has an area");
+    std::erase_if(scene_.instances, [this](const Instance& instance) {
+      return scene_.prototypes[instance.prototype].triangles.empty();
+    });
+    if (is_empty()) fail("no triangle of the scene has an area");
+    check_instances();
     for (const Sphere& sphere : scene_.spheres) check(sphere);
+    for (const Curves& curves : scene_.curves) check(curves);
     for (const Light& light : scene_.lights) check(light);
   }
 
  private:
+  [[nodiscard]] bool is_empty() const {
+    return scene_.meshes.empty() && scene_.spheres.empty() && scene_.instances.empty() &&
+           scene_.curves.empty();
+  }
   [[noreturn]] void fail(const std::string& what) const {
     throw Error(ErrorCode::bad_input, path_ + ": " + what);
   }
@@ -125,6 +134,18 @@ class Validation {
     mend_normals(mesh);
   }
 
+  void check_instances() const {
+    std::vector<Imath::Box3d> boxes;
+    for (const Mesh& mesh : scene_.prototypes) boxes.push_back(bounds_of(mesh));
+    for (const Instance& instance : scene_.instances) {
+      const Imath::Box3d box = bounds_of(boxes[instance.prototype], instance);
+      if (in_space(Vec3(box.min)) && in_space(Vec3(box.max))) continue;
+      fail(fmt::format(
+          "mesh {}: a copy is not finite, or farther away than {} times the scene's size",
+          scene_.prototypes[instance.prototype].name, kFarthest));
+    }
+  }
+
   void drop_flat_triangles(Mesh& mesh) {
     std::size_t kept = 0;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -189,6 +210,26 @@ class Validation {
     if (!in_space(c) || sphere.radius > kFarthest) {
       fail(fmt::format("sphere {}: is too large, or too far away for the size of the scene",
                        sphere.name));
+    }
+  }
+
+  void check(const Curves& curves) const {
+    const auto say = [&](const std::string& what) {
+      fail(fmt::format("curves {}: {}", curves.name, what));
+    };
+    for (std::size_t i = 0; i < curves.points.size(); ++i) {
+      const CurvePoint& p = curves.points[i];
+      if (!in_space(p.position) || !(p.radius >= 0 && p.radius <= kFarthest)) {
+        say(fmt::format("point {} is not finite, or too far away for the size of the scene", i));
+      }
+    }
+    for (const std::uint32_t segment : curves.segments) {
+      if (segment + std::size_t{1} >= curves.points.size())
+        say(fmt::format("a segment begins at point {} of {}", segment, curves.points.size()));
+    }
+    const Material& material = scene_.materials[static_cast<std::size_t>(curves.material)];
+    if (material.kind == MaterialKind::glass || !is_black(material.emission)) {
+      say(fmt::format("curves are neither glass nor lights, as the material {} is", material.name));
     }
   }
 

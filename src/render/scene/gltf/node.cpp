@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "render/scene/copies.h"
 #include "render/scene/gltf/parts.h"
 #include "render/scene/shapes.h"
 
@@ -109,30 +110,33 @@ void add_primitive(GltfLoad& load, const JsonCursor& primitive, const std::strin
   if (indices.size() < 3 || (mode == kTriangles && indices.size() % 3 != 0))
     load.leave_out("vertices that are too few for a triangle are left out", primitive.path());
   mesh.triangles = to_triangles(indices, mode);
-  load.copies.add(primitive, mesh.triangles.size(), mesh.positions.size(), placements.size());
-  Mesh all;
-  all.name = name;
-  all.material = mesh.material;
   // What is flattened has the normals of its faces.
-  Mesh flat = all;
-  for (const Imath::M44d& placement : placements) {
+  Mesh flat;
+  flat.name = name;
+  flat.material = mesh.material;
+  std::vector<Imath::M44d> whole, flattening;
+  for (const Imath::M44d& placement : placements)
+    (placement.determinant() == 0 ? flattening : whole).push_back(placement);
+  const bool instanced =
+      load.tracks.empty() && !whole.empty() && is_instanced(load.scene, mesh, whole);
+  load.copies.add(primitive, mesh.triangles.size(), mesh.positions.size(),
+                  std::max<std::size_t>(whole.size(), 1), instanced);
+  if (!flattening.empty())
+    load.copies.add(primitive, mesh.triangles.size(), mesh.positions.size(), flattening.size());
+  try {
+    if (!whole.empty() && !mesh.positions.empty()) {
+      add_copies(load.scene, mesh, whole, true, instanced);
+    }
+  } catch (const Error& error) {
+    primitive.fail("node " + name + ": " + error.what());
+  }
+  mesh.normals.clear();
+  for (const Imath::M44d& placement : flattening) {
     Mesh copy = mesh;
-    if (placement.determinant() == 0) {
-      copy.normals.clear();
-      for (Vec3& p : copy.positions) p = Vec3(Imath::V3d(p) * placement);
-      append(flat, copy);
-      continue;
-    }
-    try {
-      transform(copy, placement);
-    } catch (const Error& error) {
-      primitive.fail("node " + name + ": " + error.what());
-    }
-    append(all, copy);
+    for (Vec3& p : copy.positions) p = Vec3(Imath::V3d(p) * placement);
+    append(flat, copy);
   }
-  for (Mesh* one : {&all, &flat}) {
-    if (!one->positions.empty()) load.scene.meshes.push_back(std::move(*one));
-  }
+  if (!flat.positions.empty()) load.scene.meshes.push_back(std::move(flat));
 }
 
 }  // namespace

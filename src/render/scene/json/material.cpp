@@ -57,10 +57,11 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
   load.scene.materials.push_back(std::move(material));
 }
 
-int read_material_name(const JsonCursor& json, const Scene& scene, bool required) {
-  const auto found = json.find("material");
+int read_material_name(const JsonCursor& json, const Scene& scene, bool required,
+                       std::string_view key) {
+  const auto found = json.find(key);
   if (!found && !required) return kNone;
-  const JsonCursor cursor = json.at("material");
+  const JsonCursor cursor = json.at(key);
   const std::string name = cursor.text();
   const auto material = std::find_if(scene.materials.begin(), scene.materials.end(),
                                      [&](const Material& m) { return m.name == name; });

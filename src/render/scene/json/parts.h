@@ -17,6 +17,7 @@ struct JsonLoad {
   Scene& scene;
   TextureTable textures;
   CopyCount copies;
+  bool moves = false;  // the shape that is read, or a group around it, has keyframes
 
   explicit JsonLoad(Scene& target) : scene(target), textures(target) {}
 };
@@ -28,17 +29,23 @@ void read_medium(const JsonCursor& json, Scene& scene);
 
 // Reads one material of "materials"; its name must be new.
 void read_material(const JsonCursor& json, JsonLoad& load);
-// The index of the material that the key "material" names; kNone where the key is missing and
+// The index of the material that `key` names; kNone where the key is missing and
 // `required` is false.
-[[nodiscard]] int read_material_name(const JsonCursor& json, const Scene& scene, bool required);
+[[nodiscard]] int read_material_name(const JsonCursor& json, const Scene& scene, bool required,
+                                     std::string_view key = "material");
 
 // The transform of a shape, for row vectors, p * m. Unless Space::exact is set, its numbers, and
 // those of products, are rounded to float.
 using Placement = Imath::M44d;
 [[nodiscard]] Placement product(const Placement& a, const Placement& b, bool exact);
 
-// The placements of a shape's copies, at least one, by its keys "transform", "keyframes" and
-// "repeat". Throws Error{limit} where there are more than kMaxCopies.
+// Each of `inner` moved by each of `outer`. Throws Error{limit} where they are more than kMaxCopies.
+[[nodiscard]] std::vector<Placement> combine(const JsonCursor& json,
+                                             const std::vector<Placement>& inner,
+                                             const std::vector<Placement>& outer, bool exact);
+
+// The placements of a shape's copies, at least one, by its keys "transform", "keyframes", "repeat"
+// and "scatter". Throws Error{limit} where there are more than kMaxCopies.
 [[nodiscard]] std::vector<Placement> read_placements(const JsonCursor& json, Scene& scene);
 
 constexpr Range kFovRange{0.01, 179.99, "of degrees in (0, 180)"};
@@ -51,5 +58,19 @@ bool move_camera(const JsonCursor& json, Scene& scene, Camera& camera);
 // surrounding group. `depth`: number of groups around the shape.
 void read_shape(const JsonCursor& json, const std::vector<Placement>& placements, JsonLoad& load,
                 int depth = 0);
+
+// Adds the copies of `mesh`, and counts them; errors name the shape.
+void add_mesh(const JsonCursor& json, const Mesh& mesh, const std::vector<Placement>& placements,
+              JsonLoad& load);
+
+// Shapes that are grown from a seed, and curves (`hairball`: grown too).
+void add_curves(const JsonCursor& json, bool hairball, const std::string& name, int material,
+                const std::vector<Placement>& placements, JsonLoad& load);
+void add_tree(const JsonCursor& json, const std::string& name, int material,
+              const std::vector<Placement>& placements, JsonLoad& load);
+[[nodiscard]] Mesh read_noise_sphere(const JsonCursor& json);
+[[nodiscard]] Mesh read_tuft(const JsonCursor& json);
+// The placements of the key "scatter".
+[[nodiscard]] std::vector<Placement> read_scatter(const JsonCursor& json);
 
 }  // namespace psf::render

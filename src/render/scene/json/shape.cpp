@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/error.h"
+#include "render/scene/copies.h"
 #include "render/scene/json/parts.h"
 #include "render/scene/shapes.h"
 
@@ -102,31 +103,6 @@ Mesh read_arch(const JsonCursor& json) {
   return make_arch(arch);
 }
 
-// Adds the copies of `mesh` as one mesh.
-void add_mesh(const JsonCursor& json, const Mesh& mesh, const std::vector<Placement>& placements,
-              JsonLoad& load) {
-  load.copies.add(json, mesh.triangles.size(), mesh.positions.size(), placements.size());
-  Mesh all;
-  all.name = mesh.name;
-  all.material = mesh.material;
-  all.positions.reserve(mesh.positions.size() * placements.size());
-  all.triangles.reserve(mesh.triangles.size() * placements.size());
-  for (const Placement& placement : placements) {
-    Mesh copy = mesh;
-    try {
-      if (load.scene.space.exact) {
-        transform(copy, placement);
-      } else {
-        transform(copy, Mat4(placement));
-      }
-    } catch (const Error& error) {
-      json.fail(error.what());
-    }
-    append(all, copy);
-  }
-  load.scene.meshes.push_back(std::move(all));
-}
-
 // In float or double, see Placement.
 template <class T>
 void add_sphere(const JsonCursor& json, const Sphere& sphere, const Imath::Vec3<T>& center,
@@ -202,9 +178,24 @@ void add_mesh_file(const JsonCursor& json, int material, bool flipped,
   for (std::string& warning : part.warnings) scene.warnings.push_back(std::move(warning));
 }
 
-constexpr std::string_view kShapes[] = {"group", "sphere", "quad", "box",
-                                        "arch",  "lathe",  "mesh", "cylinder"};
-enum ShapeKind : std::size_t { group, sphere, quad, box, arch, lathe, mesh_shape, cylinder };
+constexpr std::string_view kShapes[] = {"group", "sphere",       "quad",     "box",    "arch",
+                                        "lathe", "mesh",         "cylinder", "curves", "hairball",
+                                        "tree",  "noise-sphere", "tuft"};
+enum ShapeKind : std::size_t {
+  group,
+  sphere,
+  quad,
+  box,
+  arch,
+  lathe,
+  mesh_shape,
+  cylinder,
+  curves,
+  hairball,
+  tree,
+  noise_sphere,
+  tuft
+};
 
 void check_shape_keys(const JsonCursor& json, std::size_t kind, bool from_file) {
   static const std::vector<std::string_view> kKeys[] = {
@@ -215,28 +206,24 @@ void check_shape_keys(const JsonCursor& json, std::size_t kind, bool from_file) 
       {"width", "height", "depth", "span", "rise", "segments"},
       {"profile", "segments"},
       {"file", "positions", "triangles", "normals", "uvs"},
-      {"from", "to", "radius", "to_radius", "segments", "caps"}};
-  std::vector<std::string_view> known = {"shape", "name", "transform", "keyframes", "repeat"};
+      {"from", "to", "radius", "to_radius", "segments", "caps"},
+      {"strands", "segments"},
+      {"seed", "radius", "thickness", "curl", "strands", "segments"},
+      {"seed", "height", "leaves", "leaf_size", "leaf_material"},
+      {"seed", "radius", "amplitude", "frequency", "octaves", "segments"},
+      {"seed", "height", "spread", "width", "bend", "blades"}};
+  std::vector<std::string_view> known = {"shape",     "name",   "transform",
+                                         "keyframes", "repeat", "scatter"};
   if (kind != group) known.push_back("material");
-  if (kind != group && kind != sphere) known.insert(known.end(), {"flip", "uv_scale"});
+  const bool one_mesh =
+      kind != group && kind != sphere && kind != curves && kind != hairball && kind != tree;
+  if (one_mesh) known.insert(known.end(), {"flip", "uv_scale"});
   known.insert(known.end(), kKeys[kind].begin(), kKeys[kind].end());
   if (from_file) {
-    known = {"shape", "name", "transform", "keyframes", "repeat", "material", "flip", "file"};
+    known = {"shape",   "name",     "transform", "keyframes", "repeat",
+             "scatter", "material", "flip",      "file"};
   }
   json.check_keys(known);
-}
-
-std::vector<Placement> combine(const JsonCursor& json, const std::vector<Placement>& inner,
-                               const std::vector<Placement>& outer, bool exact) {
-  if (inner.size() > kMaxCopies / outer.size()) {
-    throw Error(ErrorCode::limit, fmt::format("{}: more than {} copies", json.where(), kMaxCopies));
-  }
-  std::vector<Placement> all;
-  all.reserve(inner.size() * outer.size());
-  for (const Placement& o : outer) {
-    for (const Placement& i : inner) all.push_back(product(i, o, exact));
-  }
-  return all;
 }
 
 // A point of a shape that has points.
@@ -269,6 +256,10 @@ Mesh read_mesh(const JsonCursor& json, std::size_t kind, const Base& base) {
       return read_lathe(json);
     case cylinder:
       return read_cylinder(json, base);
+    case noise_sphere:
+      return read_noise_sphere(json);
+    case tuft:
+      return read_tuft(json);
     default:
       return read_inline_mesh(json, base);
   }
@@ -276,14 +267,23 @@ Mesh read_mesh(const JsonCursor& json, std::size_t kind, const Base& base) {
 
 }  // namespace
 
-void read_shape(const JsonCursor& json, const std::vector<Placement>& around, JsonLoad& load,
-                int depth) {
-  const std::size_t kind = json.at("shape").choice(kShapes);
-  const bool from_file = kind == mesh_shape && json.find("file").has_value();
-  check_shape_keys(json, kind, from_file);
+void add_mesh(const JsonCursor& json, const Mesh& mesh, const std::vector<Placement>& placements,
+              JsonLoad& load) {
+  const bool instanced = !load.moves && is_instanced(load.scene, mesh, placements);
+  load.copies.add(json, mesh.triangles.size(), mesh.positions.size(), placements.size(), instanced);
+  try {
+    add_copies(load.scene, mesh, placements, load.scene.space.exact, instanced);
+  } catch (const Error& error) {
+    json.fail(error.what());
+  }
+}
+
+namespace {
+
+// Adds the copies of a shape, whose keys were checked, at each of `placements`.
+void add_shape(const JsonCursor& json, std::size_t kind, bool from_file,
+               std::vector<Placement> placements, JsonLoad& load, int depth) {
   const bool exact = load.scene.space.exact;
-  std::vector<Placement> placements =
-      combine(json, read_placements(json, load.scene), around, exact);
   if (kind == group) {
     if (depth == kMaxGroupDepth)
       json.fail(fmt::format("more than {} groups within groups", kMaxGroupDepth));
@@ -303,6 +303,9 @@ void read_shape(const JsonCursor& json, const std::vector<Placement>& around, Js
     return exact ? add_sphere(json, ball, center, placements, load)
                  : add_sphere(json, ball, ball.center, placements, load);
   }
+  if (kind == curves || kind == hairball)
+    return add_curves(json, kind == hairball, name, material, placements, load);
+  if (kind == tree) return add_tree(json, name, material, placements, load);
   const Base base(load, point_of(json, kind));
   Mesh mesh = read_mesh(json, kind, base);
   if (exact) {
@@ -317,6 +320,21 @@ void read_shape(const JsonCursor& json, const std::vector<Placement>& around, Js
   mesh.name = name;
   mesh.material = material;
   add_mesh(json, mesh, placements, load);
+}
+
+}  // namespace
+
+void read_shape(const JsonCursor& json, const std::vector<Placement>& around, JsonLoad& load,
+                int depth) {
+  const std::size_t kind = json.at("shape").choice(kShapes);
+  const bool from_file = kind == mesh_shape && json.find("file").has_value();
+  check_shape_keys(json, kind, from_file);
+  const bool exact = load.scene.space.exact;
+  const bool around_moves = load.moves;
+  load.moves = around_moves || json.find("keyframes").has_value();
+  add_shape(json, kind, from_file, combine(json, read_placements(json, load.scene), around, exact),
+            load, depth);
+  load.moves = around_moves;
 }
 
 }  // namespace psf::render

@@ -94,6 +94,19 @@ std::vector<Placement> repeat(const JsonCursor& json, const std::vector<Placemen
 
 }  // namespace
 
+std::vector<Placement> combine(const JsonCursor& json, const std::vector<Placement>& inner,
+                               const std::vector<Placement>& outer, bool exact) {
+  if (inner.size() > kMaxCopies / outer.size()) {
+    throw Error(ErrorCode::limit, fmt::format("{}: more than {} copies", json.where(), kMaxCopies));
+  }
+  std::vector<Placement> all;
+  all.reserve(inner.size() * outer.size());
+  for (const Placement& o : outer) {
+    for (const Placement& i : inner) all.push_back(product(i, o, exact));
+  }
+  return all;
+}
+
 Placement product(const Placement& a, const Placement& b, bool exact) {
   return exact ? a * b : Placement(Mat4(a) * Mat4(b));
 }
@@ -107,10 +120,14 @@ std::vector<Placement> read_placements(const JsonCursor& json, Scene& scene) {
   if (const auto keys = json.find("keyframes")) {
     placements[0] = product(placements[0], read_keyed_placement(*keys, scene), exact);
   }
-  const auto found = json.find("repeat");
-  if (!found) return placements;
-  if (!found->is_array()) return repeat(*found, placements, exact);
-  for (const JsonCursor& entry : found->items()) placements = repeat(entry, placements, exact);
+  const auto found = json.find("repeat"), scattered = json.find("scatter");
+  if (found && !found->is_array()) placements = repeat(*found, placements, exact);
+  if (found && found->is_array()) {
+    for (const JsonCursor& entry : found->items()) placements = repeat(entry, placements, exact);
+  }
+  if (scattered) {
+    placements = combine(*scattered, placements, read_scatter(*scattered), exact);
+  }
   return placements;
 }
 
