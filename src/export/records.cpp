@@ -1,6 +1,7 @@
 #include "export/records.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstring>
@@ -64,10 +65,10 @@ std::vector<std::size_t> ExportRecords::find(std::span<const std::string> names)
   for (const std::string& name : names) {
     const auto place = table_.schema().find(name);
     if (!place) {
-      std::string all;
-      for (const formats::Channel& channel : table_.schema().channels) all += " " + channel.name;
-      throw Error(ErrorCode::bad_input,
-                  fmt::format("{}: has no channel {}; it has{}", path_, name, all));
+      std::vector<std::string> all;
+      for (const formats::Channel& channel : table_.schema().channels) all.push_back(channel.name);
+      throw Error(ErrorCode::bad_input, fmt::format("{}: {}has no channel {}; it has {}", path_,
+                                                    table_.prefix(), name, fmt::join(all, ", ")));
     }
     if (std::find(places.begin(), places.end(), *place) == places.end()) places.push_back(*place);
   }

@@ -76,11 +76,13 @@ void read_photons(const formats::Reader& reader, const PhotonChannels& channels,
                   const filter::PathRange& range, PhotonColumns& out) {
   const formats::TableReader& table = photon_table(reader);
   const Rows rows = rows_of(reader, range);
-  if (rows.count > filter::kMostPaths) {
-    throw Error(ErrorCode::limit,
-                fmt::format("{}: {} photons are more than a block may have, {}; give a smaller "
-                            "`block`",
-                            reader.path(), rows.count, filter::kMostPaths));
+  // The filter takes both as one set.
+  if (rows.count > filter::kMostPaths || rows.count + range.size() > filter::kMostPaths) {
+    throw Error(
+        ErrorCode::limit,
+        fmt::format("{}: {} photons and {} paths are more than a block may have, {}; give a "
+                    "smaller `block`",
+                    reader.path(), rows.count, range.size(), filter::kMostPaths));
   }
   const auto count = static_cast<std::size_t>(rows.count);
   out.passes = rows.passes;

@@ -48,6 +48,7 @@ class Workplace {
     fs::copy_file(folder_ / "good.pvb", folder_ / "cut.pvb");
     fs::resize_file(folder_ / "cut.pvb", fs::file_size(folder_ / "good.pvb") / 3);
     render("lacking.pvb", "--channels normal,reflectance");
+    render("tables.pvb", "--vertices 2 --photons 100");
     render("grey.pvb", "--image " + (folder_ / "grey.exr"));
   }
   [[nodiscard]] std::vector<std::string> files() const {
@@ -147,6 +148,24 @@ TEST_CASE("every mistake is one line, has its exit code and leaves nothing behin
        4, "does not exist"},
       {"psf-render FOLDER/broken_picture.json --image FOLDER/x.exr", 3, "cannot read the picture"},
       {"psf-render FOLDER/far.obj -o FOLDER/x.pvb --sky 1", 5, "would all be in one place"},
+      // tables
+      {"psf-render SAMPLES/cornell.json -o FOLDER/x.pvb --vertices 0", 2,
+       "--vertices: expected all"},
+      {"psf filter FOLDER/good.pvb -o FOLDER/x.exr --vertex depth:1", 3,
+       "has no vertices to choose from; render with --vertices all"},
+      {"psf filter FOLDER/tables.pvb -o FOLDER/x.exr --vertex depth:x", 2,
+       "--vertex: expected first-rough, depth:K"},
+      {"psf filter FOLDER/tables.pvb -o FOLDER/x.exr --vertex depth:1 --visibility", 3,
+       "the vertices of depth:1 have no channel visibility, which --visibility needs; choose "
+       "first-rough, or give --visibility=off"},
+      {"psf filter FOLDER/good.pvb -o FOLDER/x.exr --estimator density", 3,
+       "has no photons, which --estimator density needs; render with --photons N"},
+      {"psf export FOLDER/tables.pvb --table lights -o FOLDER/x.csv", 3,
+       "has no table lights; it has paths, vertices, photons"},
+      {"psf export FOLDER/tables.pvb --table photons -o FOLDER/x.csv --channels colour", 3,
+       "tables.pvb: table photons: has no channel colour; it has path, position, "},
+      {"psf cat FOLDER/good.pvb FOLDER/tables.pvb -o FOLDER/x.pvb", 3,
+       "it has a table vertices, which the other has not; 'psf cat --drop' leaves tables out"},
       // counts
       {"psf filter FOLDER/good.pvb -o FOLDER/x.exr --threads -1", 2,
        "--threads: expected a whole number from 0 to 4096, got \"-1\""},

@@ -195,3 +195,24 @@ TEST_CASE("an automatic exposure shows the mean logarithm as middle grey") {
   const double exposure = std::atof(json.c_str() + json.find("\"exposure\": ") + 12);
   CHECK(exposure == Approx(std::log2(0.18 / std::exp(sum / lit))).margin(1e-4));
 }
+
+TEST_CASE("a table becomes a cloud without colours, unless a channel of it is named") {
+  const TempFolder folder;
+  const std::string dump = folder / "d.pvb", cloud = folder / "c.ply";
+  REQUIRE(run("psf-render " PSF_SOURCE_DIR
+              "/sample_data/cornell.json --quiet --size 8x8 --passes 1 "
+              "--photons 50 -o " +
+              dump)
+              .code == 0);
+  const std::string verb = "psf export " + dump + " --table photons -o " + cloud;
+  for (const std::string options : {"", " --exposure auto"}) {
+    const Outcome plain = run(verb + options);
+    INFO(plain.err);
+    REQUIRE(plain.code == 0);
+    const Ply ply = parse_ply(cloud);
+    CHECK(ply.points > 50);
+    CHECK(ply.names == std::vector<std::string>{"x", "y", "z", "nx", "ny", "nz"});
+  }
+  REQUIRE(run(verb + " --colour power").code == 0);
+  CHECK(parse_ply(cloud).names.size() == 9);
+}

@@ -58,7 +58,11 @@ exports::PlyOptions ply_options(const ExportOptions& options, const std::string&
   if (format != "ply" && !(options.colour.empty() && options.exposure.empty())) {
     refuse(options.output + ": --colour and --exposure are for point clouds (.ply) alone");
   }
-  if (!options.colour.empty()) ply.colour = options.colour;
+  if (!options.colour.empty()) {
+    ply.colour = options.colour;
+  } else if (options.table != formats::kPaths) {
+    ply.colour = "none";  // contribution is a channel of the paths
+  }
   if (options.exposure == "auto") {
     ply.exposure.reset();
   } else if (!options.exposure.empty()) {
@@ -166,8 +170,9 @@ void add_export(CLI::App& app) {
              "only every N-th record; an odd N leaves no stripes");
   command
       ->add_option("--colour,--color", options.colour,
-                   "colour of the points: contribution (default), radiance (of the whole path), "
-                   "reflectance, normal, any other channel, or none. Radiances are multiplied by "
+                   "colour of the points: contribution (default of paths), radiance (of the whole "
+                   "path), reflectance, normal, any other channel, or none (default of other "
+                   "tables). Radiances are multiplied by "
                    "2^exposure, tone-mapped and sRGB-encoded like the .png of psf filter; "
                    "reflectance is sRGB-encoded; normals are (n + 1) / 2; whole numbers get a "
                    "colour each")
