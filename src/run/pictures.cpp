@@ -39,7 +39,7 @@ struct Radiance {
   }
 };
 
-// Inline: the call takes as long as the rest.
+// Inline, since it is there once for every record and layer.
 [[gnu::always_inline]] inline Radiance radiance_of(const Part& part, const Rgb& alpha, Role role,
                                                    std::size_t i) {
   const auto value = [i](std::span<const Rgb> column) {
