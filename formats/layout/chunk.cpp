@@ -23,6 +23,9 @@ constexpr std::size_t kPiece = std::size_t{128} << 10;
 // Bytes that a stored byte of zstd can become: a block of 128 KiB takes 4 at least.
 constexpr std::uint64_t kMostZstd = std::uint64_t{32} << 10;
 
+// Zeros are packed to less than their bytes over this; what is not is not decoded in vain.
+constexpr std::size_t kLeastRatioOfZeros = 64;
+
 Column decode_column(ByteReader& in) {
   Column column;
   column.channel = in.get<std::uint16_t>();
@@ -153,6 +156,13 @@ void read_column(const File& file, std::uint64_t frame_offset, const Column& col
   thread_local Buffer buffer;
   const EncodedColumn stored = read_stored(file, frame_offset, column, buffer);
   decode_zstd(stored.bytes, stored.filter, out);
+}
+
+bool is_known_to_be_zero(const File& file, std::uint64_t frame_offset, const Column& column,
+                         std::size_t size) {
+  if (column.codec != Codec::zstd || column.stored > size / kLeastRatioOfZeros) return false;
+  thread_local Buffer buffer;
+  return decodes_to_zeros(read_stored(file, frame_offset, column, buffer).bytes, size);
 }
 
 std::string record_range(std::uint64_t first, std::uint64_t count) {

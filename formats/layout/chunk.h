@@ -36,6 +36,11 @@ struct Chunk {
 void read_column(const File& file, std::uint64_t frame_offset, const Column& column,
                  std::span<std::byte> out);
 
+// Whether a column, of `size` decoded bytes, is all 0 and so little is stored that telling so is
+// cheap: true is certain, false may be wrong. Throws what read_column() throws. Thread-safe.
+[[nodiscard]] bool is_known_to_be_zero(const File& file, std::uint64_t frame_offset,
+                                       const Column& column, std::size_t size);
+
 // Reads a column without decoding it, for a copy; its stored bytes lie in `storage`. Thread-safe.
 [[nodiscard]] EncodedColumn read_stored(const File& file, std::uint64_t frame_offset,
                                         const Column& column, Buffer& storage);

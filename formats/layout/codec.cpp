@@ -38,6 +38,27 @@ Scratch& scratch() {
   return instance;
 }
 
+// Before the scratch grows: several frames in a row are no column, and what says its own size has
+// to say this one.
+void check_frame(std::span<const std::byte> stored, std::size_t size) {
+  const unsigned long long told = ZSTD_getFrameContentSize(stored.data(), stored.size());
+  if (ZSTD_findFrameCompressedSize(stored.data(), stored.size()) != stored.size() ||
+      (told != ZSTD_CONTENTSIZE_UNKNOWN && told != size)) {
+    throw Error(ErrorCode::bad_input, "is not one Zstandard frame of the size of its records");
+  }
+}
+
+void unpack(std::span<const std::byte> stored, std::span<std::byte> out) {
+  Scratch& mine = scratch();
+  if (!mine.decompressor) mine.decompressor.reset(ZSTD_createDCtx());
+  if (!mine.decompressor) throw std::bad_alloc();
+  const std::size_t size = ZSTD_decompressDCtx(mine.decompressor.get(), out.data(), out.size(),
+                                               stored.data(), stored.size());
+  if (ZSTD_isError(size) != 0 || size != out.size()) {
+    throw Error(ErrorCode::bad_input, "does not decode to the size of its records");
+  }
+}
+
 }  // namespace
 
 std::span<std::byte> Buffer::get(std::size_t size) {
@@ -75,11 +96,13 @@ void unshuffle4(std::span<const std::byte> in, std::span<std::byte> out) {
   const std::byte* const c = b + words;
   const std::byte* const d = c + words;
   std::byte* to = out.data();
-  for (std::size_t k = 0; k < words; ++k) {
-    const std::uint32_t word =
-        static_cast<std::uint32_t>(a[k]) | static_cast<std::uint32_t>(b[k]) << 8 |
-        static_cast<std::uint32_t>(c[k]) << 16 | static_cast<std::uint32_t>(d[k]) << 24;
-    std::memcpy(to + 4 * k, &word, 4);
+  // Byte by byte, which compilers make interleaved stores of: words put together take 2.6 times as
+  // long.
+  for (std::size_t k = 0; k < words; ++k, to += 4) {
+    to[0] = a[k];
+    to[1] = b[k];
+    to[2] = c[k];
+    to[3] = d[k];
   }
   std::copy(in.begin() + static_cast<std::ptrdiff_t>(4 * words), in.end(),
             out.begin() + static_cast<std::ptrdiff_t>(4 * words));
@@ -105,24 +128,19 @@ EncodedColumn encode_column(Codec wanted, std::span<const std::byte> raw, Buffer
 }
 
 void decode_zstd(std::span<const std::byte> stored, Filter filter, std::span<std::byte> out) {
-  Scratch& mine = scratch();
-  if (!mine.decompressor) mine.decompressor.reset(ZSTD_createDCtx());
-  if (!mine.decompressor) throw std::bad_alloc();
-  // Before the scratch grows: several frames in a row are no column, and what says its own size
-  // has to say this one.
-  const unsigned long long told = ZSTD_getFrameContentSize(stored.data(), stored.size());
-  if (ZSTD_findFrameCompressedSize(stored.data(), stored.size()) != stored.size() ||
-      (told != ZSTD_CONTENTSIZE_UNKNOWN && told != out.size())) {
-    throw Error(ErrorCode::bad_input, "is not one Zstandard frame of the size of its records");
-  }
+  check_frame(stored, out.size());
   const bool shuffled = filter == Filter::shuffle4;
-  const std::span<std::byte> target = shuffled ? mine.shuffled.get(out.size()) : out;
-  const std::size_t size = ZSTD_decompressDCtx(mine.decompressor.get(), target.data(),
-                                               target.size(), stored.data(), stored.size());
-  if (ZSTD_isError(size) != 0 || size != out.size()) {
-    throw Error(ErrorCode::bad_input, "does not decode to the size of its records");
-  }
+  const std::span<std::byte> target = shuffled ? scratch().shuffled.get(out.size()) : out;
+  unpack(stored, target);
   if (shuffled) unshuffle4(target, out);
+}
+
+bool decodes_to_zeros(std::span<const std::byte> stored, std::size_t size) {
+  check_frame(stored, size);
+  if (size == 0) return true;
+  const std::span<std::byte> bytes = scratch().shuffled.get(size);
+  unpack(stored, bytes);
+  return bytes[0] == std::byte{0} && std::memcmp(bytes.data(), bytes.data() + 1, size - 1) == 0;
 }
 
 }  // namespace psf::formats

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <memory>
 #include <utility>
@@ -71,15 +72,22 @@ Chunk TableReader::decoded(std::size_t chunk, const Frame& frame) const {
   }
 }
 
-// A whole column; `out` has its size.
-void TableReader::read_whole(std::size_t chunk, std::size_t k, std::span<std::byte> out) const {
+// Calls use(column) for a whole column.
+template <class Use>
+void TableReader::use_whole(std::size_t chunk, std::size_t k, const Use& use) const {
   const Chunk found = chunk_directory(chunk);
   try {
-    read_column(file_, chunks()[chunk].offset, found.columns[k], out);
+    use(found.columns[k]);
   } catch (const Error& error) {
     if (error.code() == ErrorCode::io) throw;
     fail_chunk(chunk, fmt::format("channel {}: {}", channel(k).name, error.what()));
   }
+}
+
+// A whole column; `out` has its size.
+void TableReader::read_whole(std::size_t chunk, std::size_t k, std::span<std::byte> out) const {
+  use_whole(chunk, k,
+            [&](const Column& column) { read_column(file_, chunks()[chunk].offset, column, out); });
 }
 
 ColumnCache::Bytes TableReader::column(std::size_t chunk, std::size_t k) const {
@@ -158,6 +166,20 @@ void TableReader::read(std::size_t k, std::uint64_t first, std::size_t count,
              [&](std::size_t chunk, std::size_t begin, std::size_t length, std::size_t before) {
                read_part(chunk, k, begin, length, out.subspan(before * stride, length * stride));
              });
+}
+
+bool TableReader::is_known_to_be_zero(std::size_t k, std::uint64_t first, std::size_t count) const {
+  std::atomic<bool> zero{true};
+  for_chunks(first, count, [&](std::size_t chunk, std::size_t, std::size_t, std::size_t) {
+    if (!zero) return;
+    use_whole(chunk, k, [&](const Column& column) {
+      if (!formats::is_known_to_be_zero(file_, chunks()[chunk].offset, column,
+                                        chunks()[chunk].count * channel(k).stride())) {
+        zero = false;
+      }
+    });
+  });
+  return zero;
 }
 
 void TableReader::read_floats(std::size_t k, std::uint64_t first, std::size_t count,

@@ -50,6 +50,10 @@ class TableReader {
   // Channel::decoded_components().
   void read_floats(std::size_t k, std::uint64_t first, std::size_t count,
                    std::span<float> out) const;
+  // Whether the records [first, first + count) of channel k are known to be 0 in all their bytes
+  // without reading them: true is certain, false may be wrong. Throws what read() throws.
+  [[nodiscard]] bool is_known_to_be_zero(std::size_t k, std::uint64_t first,
+                                         std::size_t count) const;
 
   // The start of a message about it: "table vertices: ", empty for the paths.
   [[nodiscard]] std::string prefix() const;
@@ -62,6 +66,8 @@ class TableReader {
   [[nodiscard]] const Channel& channel(std::size_t k) const { return schema().channels.at(k); }
   [[nodiscard]] Chunk chunk_directory(std::size_t chunk) const;
   [[nodiscard]] Chunk decoded(std::size_t chunk, const Frame& frame) const;
+  template <class Use>
+  void use_whole(std::size_t chunk, std::size_t k, const Use& use) const;
   void read_whole(std::size_t chunk, std::size_t k, std::span<std::byte> out) const;
   [[nodiscard]] ColumnCache::Bytes column(std::size_t chunk, std::size_t k) const;
   void read_part(std::size_t chunk, std::size_t k, std::size_t first, std::size_t count,

@@ -33,7 +33,9 @@ void BlockLoop::visit(std::uint64_t k, const Visitor& visit) {
       reader_.read((*blocks_)[k], ahead ? std::optional((*blocks_)[k + 1]) : std::nullopt);
   const filter::Records records = read.view();
   std::uint64_t not_finite = 0;
-  for (const BlockRecords::LayerColumns& layer : read.layers) not_finite += layer.not_finite;
+  for (const BlockRecords::LayerColumns& layer : read.layers) {
+    not_finite += layer.contribution.not_finite + layer.unfiltered.not_finite;
+  }
   const filter::Block block = describe_block(dump_, *blocks_, k, count_);
   visit({k, (*blocks_)[k], records, block, not_finite, read.not_finite_coverage});
 }

@@ -31,8 +31,11 @@ struct BlockRecords {
   std::uint64_t not_finite_coverage = 0;  // values that are 1 in place of what the file has
   // The columns of the layers, and the views of them that view() gives out.
   struct LayerColumns {
-    std::vector<Rgb> contribution, unfiltered;
-    std::uint64_t not_finite = 0;  // values that are 0 in place of what the file has
+    struct Column {
+      std::vector<Rgb> values;       // empty: all are 0
+      std::uint64_t not_finite = 0;  // values that are 0 in place of what the file has
+    };
+    Column contribution, unfiltered;
   };
   std::vector<LayerColumns> layers;
   std::vector<filter::Layer> layer_views;

@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "filter/places.h"
 #include "formats/layout/channels.h"
+#include "run/layer_columns.h"
 #include "run/vertex_cut.h"
 
 namespace psf::run {
@@ -43,18 +44,6 @@ std::string called(const formats::CameraInfo& camera) {
 // Floats of any width are taken, integers only as the format has them.
 bool is_float(Type type) {
   return type == Type::f16 || type == Type::f32 || type == Type::f64;
-}
-
-// What is not finite would take all that is averaged with it along, also in other layers' sums.
-void make_finite(BlockRecords::LayerColumns& layer) {
-  layer.not_finite = 0;
-  for (std::vector<Rgb>* column : {&layer.contribution, &layer.unfiltered}) {
-    for (Rgb& value : *column) {
-      if (is_finite(value)) continue;
-      value = Rgb(0, 0, 0);
-      ++layer.not_finite;
-    }
-  }
 }
 
 // What of alpha is not finite counts as covered.
@@ -230,18 +219,12 @@ void Dump::read(const filter::PathRange& range, const ChannelSet& channels,
   };
   filter::for_each_channel(
       [&](const char*, const auto& member) { add_task(member(channels), member(out)); });
-  out.layers.resize(channels.layers.size());
-  for (std::size_t k = 0; k < channels.layers.size(); ++k) {
-    add_task(channels.layers[k].contribution, out.layers[k].contribution);
-    add_task(channels.layers[k].unfiltered, out.layers[k].unfiltered);
-  }
+  add_layer_tasks(reader_, range, channels.layers, out, tasks);
   core::parallel_for(tasks.size(), 1, [&](std::size_t begin, std::size_t) { tasks[begin](); });
-  core::parallel_for(out.layers.size(), 1,
-                     [&](std::size_t begin, std::size_t) { make_finite(out.layers[begin]); });
   make_finite(out.coverage, out.not_finite_coverage);
   out.layer_views.clear();
   for (const BlockRecords::LayerColumns& layer : out.layers) {
-    out.layer_views.push_back({layer.contribution, layer.unfiltered});
+    out.layer_views.push_back({layer.contribution.values, layer.unfiltered.values});
   }
   if (!channels.flags) out.flags.assign(count, filter::kHasVertex | filter::kShaded);
   // Where x_i is not read, nothing of it is asked for.

@@ -38,9 +38,11 @@ class CameraPictures {
   // a pixel in path order, from one thread, which are all finite.
   void add(const filter::Records& records, const filter::Estimates& estimates,
            std::span<const float> radius, std::size_t i);
-  // Adds what layer k of the records has of record i, unless it overflows.
-  void add_layer(std::size_t k, const filter::Records& records, const filter::Estimates& estimates,
-                 std::size_t i);
+  // Adds what layer k of the records has of `some` records to the pictures of their cameras, but for
+  // those of which it overflows.
+  static void add_layer(std::size_t k, const filter::Records& records,
+                        const filter::Estimates& estimates, std::span<const std::size_t> some,
+                        std::span<CameraPictures> pictures);
 
   // The picture with R, G, B, filtered, and those of these layers that were asked for:
   // unfiltered-input.R/G/B, over the paths for which is_input() is true, filled as in

@@ -52,6 +52,27 @@ TEST_CASE("shuffle4 puts byte k of all words together and leaves the rest behind
   }
 }
 
+TEST_CASE("a column of zeros is told by its zstd bytes, and one with any other byte is not") {
+  for (std::size_t size : {64u, 100u, 4096u, 100003u}) {
+    test::Bytes raw(size);
+    Buffer storage;
+    const auto is_zero = [&] {
+      const EncodedColumn column = encode_column(Codec::zstd, raw, storage);
+      REQUIRE(column.codec == Codec::zstd);
+      return decodes_to_zeros(column.bytes, size);
+    };
+    CHECK(is_zero());
+    for (std::size_t place : {std::size_t{0}, size / 2, size - 1}) {
+      raw[place] = std::byte{0x80};
+      CHECK_FALSE(is_zero());
+      raw[place] = std::byte{0};
+    }
+    const EncodedColumn column = encode_column(Codec::zstd, raw, storage);
+    CHECK_THROWS_AS(decodes_to_zeros(column.bytes, size + 1), Error);
+    CHECK_THROWS_AS(decodes_to_zeros(column.bytes.first(column.bytes.size() - 1), size), Error);
+  }
+}
+
 TEST_CASE("a column comes back from either codec, and zstd is left where it gains nothing") {
   for (std::size_t size : {1u, 2u, 3u, 12u, 100u, 4096u, 100003u}) {
     for (unsigned range : {1u, 4u, 256u}) {

@@ -1,4 +1,5 @@
 // Layers of the light from a dump to its pictures: what they are called, and that they add up.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -119,6 +120,70 @@ TEST_CASE("A layer is the picture of a dump that has its light alone") {
   for (std::size_t camera = 0; camera < alone.size(); ++camera) {
     CHECK(layered[camera].rgb("key.") == alone[camera].rgb());
     CHECK(layered[camera].rgb("unfiltered-input.key.") == alone[camera].rgb("unfiltered-input."));
+  }
+}
+
+TEST_CASE("A layer that is black in some chunks, blocks or columns is that of its light alone") {
+  for (const formats::Codec codec : {formats::Codec::raw, formats::Codec::zstd}) {
+    for (const std::uint32_t capacity : {100u, 200u}) {
+      Layered dump(60);
+      dump.options_.codec = codec;
+      dump.options_.chunk_capacity = capacity;
+      // The first pass is black, the second but for its last record; of u all are.
+      std::fill_n(dump.key_.begin(), 399, Rgb(0, 0, 0));
+      dump.key_[399] = Rgb(0, 0, 0.5f);
+      dump.key_u_.assign(dump.set_.size(), Rgb(0, 0, 0));
+      for (const char* block : {"1pass", "2passes", "2^7"}) {
+        INFO(capacity << " a chunk, block " << block);
+        const FilterRequest request = default_run(block);
+        const std::vector<film::Image> layered = filtered(dump.written(), request);
+        Layered bare(60);
+        bare.set_.contribution = dump.key_;
+        bare.set_.unfiltered = dump.key_u_;
+        bare.options_.more.clear();
+        const std::vector<film::Image> alone = filtered(bare.written(), request);
+        for (std::size_t camera = 0; camera < alone.size(); ++camera) {
+          CHECK(layered[camera].rgb("key.") == alone[camera].rgb());
+          CHECK(layered[camera].rgb("unfiltered-input.key.") ==
+                alone[camera].rgb("unfiltered-input."));
+          CHECK(layered[camera].rgb("key.") != layered[camera].rgb("fill."));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("Columns of black layers are empty, and what is not finite in others is counted") {
+  for (const formats::Codec codec : {formats::Codec::raw, formats::Codec::zstd}) {
+    Layered dump(61);
+    dump.options_.codec = codec;
+    dump.options_.chunk_capacity = 200;
+    dump.key_.assign(dump.set_.size(), Rgb(0, 0, 0));
+    dump.seen_.assign(dump.set_.size(), Rgb(0, 0, 0));
+    dump.seen_[250].y = -0.0f;
+    dump.fill_[130].x = kNan;
+    dump.fill_[599].z = -kInfinity;
+    const run::Dump file(dump.written());
+    run::ChannelSet channels = file.select(default_run().parameters, false);
+    channels.layers = run::light_layers(file.reader());
+    run::BlockRecords records;
+    for (const filter::PathRange& range :
+         {filter::PathRange{0, 600}, filter::PathRange{120, 240}, filter::PathRange{150, 190}}) {
+      file.read(range, channels, records);
+      const auto layers = records.view().layers;
+      CHECK(layers[0].contribution.empty());
+      CHECK(layers[1].contribution.empty());
+      CHECK(layers[1].unfiltered.size() == (range.last > 250 ? 600u : 0u));
+      CHECK(layers[2].contribution.size() == range.size());
+      CHECK(records.layers[2].contribution.not_finite == (range.last == 600    ? 2u
+                                                          : range.first <= 130 ? 1u
+                                                                               : 0u));
+      for (std::size_t i = 0; i < layers[2].contribution.size(); ++i) {
+        const std::size_t of_file = static_cast<std::size_t>(range.first) + i;
+        const bool damaged = of_file == 130 || of_file == 599;
+        CHECK(layers[2].contribution[i] == (damaged ? Rgb(0, 0, 0) : dump.fill_[of_file]));
+      }
+    }
   }
 }
 

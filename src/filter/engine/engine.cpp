@@ -30,9 +30,11 @@ class TreeEngine final : public Engine {
       core::throw_if_interrupted("no picture was written");
       Statistics& counts = parts[begin / Packets::kGrain];
       Found found;
-      core::Buffer<double> several(all.size() > 1 ? all.size() * 3 * kWidth : 0);
+      const std::size_t rows = 3 * all.size();
+      core::Buffer<double> several(all.size() > 1 ? rows * kWidth : 0);
+      core::Buffer<float> means(p_.area.empty() ? rows * kWidth : 0);
       packets_.each(begin, end, [&](auto queries, auto nodes, Packet& packet) {
-        const double* added = packet.sum[0];
+        double* added = packet.sum[0];
         if (all.size() == 1) {
           add_sources(tree, sums[0], terms, nodes, packet);
         } else {
@@ -40,9 +42,15 @@ class TreeEngine final : public Engine {
           add_found(sums, found, several.begin());
           added = several.begin();
         }
-        for (const Averaged& one : all) {
-          average(queries, packet, added, one, neighbors);
-          added += 3 * kWidth;
+        add_own(queries, packet, all, added);
+        for (std::size_t k = 0; k < queries.size(); ++k) {
+          neighbors[queries[k]] = static_cast<std::uint32_t>(packet.count[k]);
+        }
+        if (p_.area.empty()) {
+          average_sums(packet, {added, rows * kWidth}, means.begin());
+          put_averages(queries, packet, means.begin(), all);
+        } else {
+          put_over_disks(queries, packet, added, all);
         }
         if (count_refusals) count(queries, nodes, packet, counts);
         for (const std::uint32_t i : queries) {
@@ -60,22 +68,50 @@ class TreeEngine final : public Engine {
   }
 
  private:
-  // Averages one value of the queries that have a neighbour, from its sums, (3, 16).
-  void average(std::span<const std::uint32_t> queries, const Packet& packet, const double* added,
-               const Averaged& one, std::span<std::uint32_t> neighbors) const {
+  // Adds to the sums, (values, 3, 16), and counts the queries that the walk did not meet: i is a
+  // source like any other, and w_ii = 1 whatever the terms say.
+  void add_own(std::span<const std::uint32_t> queries, Packet& packet,
+               std::span<const Averaged> all, double* sums) const {
     for (std::size_t k = 0; k < queries.size(); ++k) {
       const std::uint32_t i = queries[k];
-      Sum sum{added[k], added[kWidth + k], added[2 * kWidth + k]};
-      auto count = static_cast<std::uint32_t>(packet.count[k]);
-      // The walk met i like any other source; w_ii = 1 whatever the terms say.
-      if (packet.met_itself[k] == 0 && packets_.is_source(i)) {
-        sum.add(one.values[i], p_.area.empty() ? 1 : double{p_.area[i]});
-        ++count;
+      if (packet.met_itself[k] != 0 || !packets_.is_source(i)) continue;
+      ++packet.count[k];
+      const double weight = p_.area.empty() ? 1 : double{p_.area[i]};
+      double* sum = sums + k;
+      for (const Averaged& one : all) {
+        const Rgb& own = one.values[i];
+        for (const float component : {own.x, own.y, own.z}) {
+          *sum += weight * double{component};
+          sum += kWidth;
+        }
       }
-      neighbors[i] = count;
-      if (count > 0) {
-        one.out[i] = quotient(sum, count, !p_.area.empty(), p_.radius[i], one.values[i]);
+    }
+  }
+
+  // The averages, (values, 3, 16), of the queries that have a neighbour.
+  static void put_averages(std::span<const std::uint32_t> queries, const Packet& packet,
+                           const float* means, std::span<const Averaged> all) {
+    for (const Averaged& one : all) {
+      for (std::size_t k = 0; k < queries.size(); ++k) {
+        if (packet.count[k] == 0) continue;
+        one.out[queries[k]] = Rgb(means[k], means[kWidth + k], means[2 * kWidth + k]);
       }
+      means += 3 * kWidth;
+    }
+  }
+
+  // The same for [disk], from the sums.
+  void put_over_disks(std::span<const std::uint32_t> queries, const Packet& packet,
+                      const double* sums, std::span<const Averaged> all) const {
+    for (const Averaged& one : all) {
+      for (std::size_t k = 0; k < queries.size(); ++k) {
+        if (packet.count[k] == 0) continue;
+        const std::uint32_t i = queries[k];
+        const Sum sum{sums[k], sums[kWidth + k], sums[2 * kWidth + k]};
+        const auto count = static_cast<std::uint32_t>(packet.count[k]);
+        one.out[i] = quotient(sum, count, true, p_.radius[i], one.values[i]);
+      }
+      sums += 3 * kWidth;
     }
   }
 

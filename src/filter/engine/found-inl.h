@@ -51,8 +51,8 @@ HWY_INLINE void count_found(const Found& found, Packet& packet) {
   }
 }
 
-// As many values as have their sums in registers, of which there are 16, or 32.
-constexpr std::size_t kValuesAtOnce = kLanes == kWidth ? 4 : 2;
+// As many values as have their sums in registers, of which there are 16, or 32. A value has six.
+constexpr std::size_t kValuesAtOnce = kLanes == kWidth ? 5 : 2;
 
 // Sets `out`, (kCount, 3, 16), for kCount values, by the additions of SumSink.
 template <std::size_t kCount>
@@ -94,6 +94,16 @@ HWY_INLINE void add_values(const TreeSums* sums, const Found& found, double* out
       }
     }
   }
+}
+
+// The same for `count` values, at most kMost.
+template <std::size_t kMost>
+HWY_INLINE void add_some_values(std::size_t count, const TreeSums* sums, const Found& found,
+                                double* out) {
+  if constexpr (kMost > 1) {
+    if (count < kMost) return add_some_values<kMost - 1>(count, sums, found, out);
+  }
+  add_values<kMost>(sums, found, out);
 }
 
 }  // namespace psf::filter::engine::HWY_NAMESPACE

@@ -58,14 +58,16 @@ void find_sources_on(const Tree& tree, const WeightTerms& terms,
 }
 
 void add_found_on(std::span<const TreeSums> sums, const Found& found, double* out) {
-  for (; sums.size() >= kValuesAtOnce; sums = sums.subspan(kValuesAtOnce)) {
-    add_values<kValuesAtOnce>(sums.data(), found, out);
-    out += kValuesAtOnce * 3 * kWidth;
+  while (!sums.empty()) {
+    const std::size_t count = std::min(sums.size(), kValuesAtOnce);
+    add_some_values<kValuesAtOnce>(count, sums.data(), found, out);
+    out += count * 3 * kWidth;
+    sums = sums.subspan(count);
   }
-  for (const TreeSums& one : sums) {
-    add_values<1>(&one, found, out);
-    out += 3 * kWidth;
-  }
+}
+
+void average_sums_on(const Packet& packet, std::span<const double> sums, float* means) {
+  means_of_sums(packet, sums, means);
 }
 
 void add_to_rings_on(const Tree& tree, const TreeSums& sums, const WeightTerms& terms,
@@ -93,6 +95,7 @@ HWY_EXPORT(extremes_on);
 HWY_EXPORT(add_sources_on);
 HWY_EXPORT(find_sources_on);
 HWY_EXPORT(add_found_on);
+HWY_EXPORT(average_sums_on);
 HWY_EXPORT(add_to_rings_on);
 HWY_EXPORT(average_balls_on);
 HWY_EXPORT(count_on);
@@ -111,6 +114,9 @@ void find_sources(const Tree& tree, const WeightTerms& terms,
 }
 void add_found(std::span<const TreeSums> sums, const Found& found, double* out) {
   HWY_DYNAMIC_DISPATCH(add_found_on)(sums, found, out);
+}
+void average_sums(const Packet& packet, std::span<const double> sums, float* means) {
+  HWY_DYNAMIC_DISPATCH(average_sums_on)(packet, sums, means);
 }
 void add_to_rings(const Tree& tree, const TreeSums& sums, const WeightTerms& terms,
                   std::span<const std::uint32_t> parents, Packet& packet, const RingPacket& rings) {

@@ -85,6 +85,10 @@ void find_sources(const Tree& tree, const WeightTerms& terms,
                   std::span<const std::uint32_t> parents, Packet& packet, Found& found);
 void add_found(std::span<const TreeSums> sums, const Found& found, double* out);
 
+// Sets `means`, as many as `sums`, (rows, 16), to the sums over packet.count, in double and rounded
+// to float; what no source was added to is undefined. Both are aligned to 64 bytes.
+void average_sums(const Packet& packet, std::span<const double> sums, float* means);
+
 // Does the same as add_sources() for all radii in one walk, but adds each source to its ring in
 // `rings`. Sets packet.met_itself.
 void add_to_rings(const Tree& tree, const TreeSums& sums, const WeightTerms& terms,

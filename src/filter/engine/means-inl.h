@@ -1,4 +1,4 @@
-// Turns sums over rings into means over balls.
+// Turns sums into means, those over rings into means over balls.
 #if defined(PSF_FILTER_ENGINE_MEANS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSF_FILTER_ENGINE_MEANS_INL_H
 #undef PSF_FILTER_ENGINE_MEANS_INL_H
@@ -10,6 +10,19 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace psf::filter::engine::HWY_NAMESPACE {
+
+// `sums` and `means` are (rows, 16).
+HWY_INLINE void means_of_sums(const Packet& packet, std::span<const double> sums, float* means) {
+  constexpr hn::Rebind<std::int32_t, DD> integers;
+  constexpr hn::Rebind<float, DD> floats;
+  for (std::size_t lane = 0; lane < kWidth; lane += kDoubles) {
+    const VD count = hn::PromoteTo(kDD, hn::LoadU(integers, packet.count + lane));
+    for (std::size_t at = lane; at < sums.size(); at += kWidth) {
+      const VD mean = hn::Div(hn::Load(kDD, sums.data() + at), count);
+      hn::StoreU(hn::DemoteTo(floats, mean), floats, means + at);
+    }
+  }
+}
 
 // Four doubles: red, green, blue and a count.
 struct Quadruple {

@@ -9,7 +9,7 @@
 namespace psf::filter {
 namespace {
 
-constexpr std::size_t kQueriesARange = 4096;
+constexpr std::size_t kRecordsARange = 4096;
 
 using core::Clock;
 using core::seconds_since;
@@ -28,7 +28,22 @@ class Averages {
       if (records.layers[k].contribution.empty()) continue;
       parts_.push_back({records.layers[k].contribution, {}, &result.layers[k]});
     }
-    for (const Part& part : parts_) part.c_bar->assign(records.size(), Rgb(0, 0, 0));
+    for (const Part& part : parts_) part.c_bar->resize(records.size());  // Rgb has no first value
+    blacken([](Role role) { return !is_query(role); });
+  }
+
+  // What an engine does not write: 0 for the records with such a role.
+  template <class Wanted>
+  void blacken(const Wanted& wanted) {
+    core::parallel_for(roles_.of.size(), kRecordsARange, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::size_t> some;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (wanted(roles_.of[i])) some.push_back(i);
+      }
+      for (const Part& part : parts_) {
+        for (const std::size_t i : some) (*part.c_bar)[i] = Rgb(0, 0, 0);
+      }
+    });
   }
 
   // Divides by rho where the parameters say so.
@@ -54,12 +69,17 @@ class Averages {
     apply(engine, false, repeated);
   }
 
-  // Applies finished() to the averages of every query.
+  // Applies finished() to the averages of every query that it may change: without demodulation
+  // those of one source.
   void finish(std::span<const float> radius) {
     const std::span<const std::uint32_t> queries = roles_.queries;
-    core::parallel_for(queries.size(), kQueriesARange, [&](std::size_t begin, std::size_t end) {
+    core::parallel_for(queries.size(), kRecordsARange, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> some;
+      for (const std::uint32_t i : queries.subspan(begin, end - begin)) {
+        if (input_.parameters.demodulate || result_.neighbors[i] == 1) some.push_back(i);
+      }
       for (const Part& part : parts_) {
-        for (const std::uint32_t i : queries.subspan(begin, end - begin)) {
+        for (const std::uint32_t i : some) {
           Rgb& c_bar = (*part.c_bar)[i];
           c_bar = finished(c_bar, result_.neighbors[i], roles_.of[i] == Role::source, radius[i],
                            part.contribution[i], input_.records, i, input_.parameters);
@@ -93,6 +113,7 @@ Estimates apply_engine(const MethodInput& input, const EngineSteps& steps) {
   Roles roles = find_roles(records, block, parameters, result.statistics);
   Averages averages(input, roles, result);
   if (roles.sources.empty()) {
+    averages.blacken([](Role) { return true; });
     result.roles = std::move(roles.of);
     leave_out_queries(result.roles, result.statistics);
     return result;
