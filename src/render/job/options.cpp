@@ -147,15 +147,15 @@ void add_output(std::vector<Option>& table) {
   table.push_back(choice(
       "codec", kOutput, [](Job & j) -> auto& { return j.codec; },
       {{"raw", formats::Codec::raw}, {"zstd", formats::Codec::zstd}}, "how columns are stored"));
-  Option channels =
-      parsed("channels", "NAME,...", kOutput, "names of channels",
-             "optional channels to write, comma-separated: default, which is normal, reflectance, "
-             "camera, visibility, hit_distance, direction, material, roughness, and what there is "
-             "unless given; film, lens, time, frame, alpha, kind; or all",
-             [](Job& job, const std::string& text) {
-               job.settings.channels.push_back(text);
-               return true;
-             });
+  Option channels = parsed(
+      "channels", "NAME,...", kOutput, "names of channels",
+      "optional channels to write, comma-separated: default, which is normal, reflectance, "
+      "camera, visibility, hit_distance, direction, material, roughness, in scenes with volumes "
+      "kind, and what there is unless given; film, lens, time, frame, alpha, kind; or all",
+      [](Job& job, const std::string& text) {
+        job.settings.channels.push_back(text);
+        return true;
+      });
   channels.is_list = true;
   channels.separator = ',';
   table.push_back(std::move(channels));

@@ -25,6 +25,10 @@ Vec3 Surface::bent_into_sight(const Vec3& normal, const Vec3& geometric_normal,
   return normalize(normal - direction * (kLeastCosine - cosine));
 }
 
+Surface Surface::in_medium(const Vec3& position, const Vec3& direction, int medium, int material) {
+  return {position, -direction, -direction, Vec2(0, 0), 0, material, kNone, true, medium};
+}
+
 Shapes::Shapes(const Scene& scene) {
   meshes_.reserve(scene.meshes.size());
   for (const Mesh& m : scene.meshes) {

@@ -19,11 +19,16 @@ struct Surface {
   int material;  // index in Scene::materials
   int emitter;   // number of its light; kNone: it emits nothing
   bool front;    // the ray met the front side
+  int medium = kNone;  // a place in this one of Scene::media instead of a surface
 
   // The normal as it is shaded for whoever looks along the unit `direction` at this side: where it
   // would face away, it is bent just into sight.
   [[nodiscard]] static Vec3 bent_into_sight(const Vec3& normal, const Vec3& geometric_normal,
                                             const Vec3& direction);
+
+  // A place in a medium to which a ray came along the unit `direction`.
+  [[nodiscard]] static Surface in_medium(const Vec3& position, const Vec3& direction, int medium,
+                                         int material);
 
   // The origin of a ray toward `direction`, such that the ray does not meet this surface again.
   [[nodiscard]] Vec3 origin_toward(const Vec3& direction) const {

@@ -79,7 +79,8 @@ class Loop {
         settings_(settings),
         writer_(writer),
         shade_rate_(settings.shade_rate),
-        channels_(record_channels(settings.channels, integrator.layers())),
+        channels_(
+            record_channels(settings.channels, integrator.layers(), integrator.has_volumes())),
         has_sample_(has_sample(channels_)) {
     result_.films.reserve(settings.cameras.size());
     std::size_t largest = 0;
