@@ -49,7 +49,7 @@ TEST_CASE("an error of the JSON scene names file and JSON path", "[load][json]")
         "s.json:1: /materials/0/reflectance/1: expected a number in [0, 1], got 1.5");
   CHECK(message_of(R"({"materials": [{"name": "a", "kind": "velvet"}]})") ==
         "s.json:1: /materials/0/kind: expected one of diffuse, mirror, glass, conductor, coat, "
-        "subsurface, got \"velvet\"");
+        "subsurface, volume, got \"velvet\"");
   CHECK(message_of(R"({"materials": [{"name": "a"}, {"name": "a"}]})") ==
         "s.json:1: /materials/1/name: another material is called \"a\"");
   CHECK(message_of(R"({"materials": [{"kind": "glass"}]})") ==
@@ -115,8 +115,11 @@ TEST_CASE("an error of a medium of the JSON scene names file and JSON path", "[l
         "s.json:1: /materials/0: the key \"interior\" is missing");
   CHECK(material(R"(, "kind": "subsurface", "interior": "waxx")") ==
         "s.json:1: /materials/0/interior: no medium is called \"waxx\"; did you mean \"wax\"?");
+  CHECK(message_of(R"({"media": [{"name": "wax", "sigma_s": 1}], "medium": "wx"})") ==
+        "s.json:1: /medium: no medium is called \"wx\"; did you mean \"wax\"?");
   CHECK(material(R"(, "interior": "wax")") ==
-        "s.json:1: /materials/0/interior: only materials of the kind subsurface have one");
+        "s.json:1: /materials/0/interior: only materials of the kinds subsurface and volume "
+        "have one");
 }
 
 TEST_CASE("values within values end somewhere", "[load][json]") {

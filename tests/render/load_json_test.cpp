@@ -112,7 +112,9 @@ TEST_CASE("every key of a medium arrives, in the unit of the scene's space", "[l
         {"name": "milk", "albedo": [1, 0.75, 0.5], "mean_free_path": [0.5, 1, 2], "g": 0.9},
         {"name": "ink", "sigma_a": [1, 2, 3], "sigma_s": 4}],
       "materials": [
-        {"name": "drop", "kind": "subsurface", "interior": "ink", "ior": 1.3, "roughness": 0.2}],
+        {"name": "drop", "kind": "subsurface", "interior": "ink", "ior": 1.3, "roughness": 0.2},
+        {"name": "cloud", "kind": "volume", "interior": "milk"}],
+      "medium": "ink",
       "shapes": [{"shape": "sphere", "material": "drop", "center": [0, 0, 0], "radius": )" +
                                                  radius + "}]}"));
   };
@@ -126,6 +128,9 @@ TEST_CASE("every key of a medium arrives, in the unit of the scene's space", "[l
   CHECK(scene.media[1].g == 0);
   CHECK(scene.materials[0].kind == MaterialKind::subsurface);
   CHECK(scene.materials[0].interior == 1);
+  CHECK(scene.materials[1].kind == MaterialKind::volume);
+  CHECK(scene.materials[1].interior == 0);
+  CHECK(scene.medium == 1);
   const Scene huge = load("1e9");
   CHECK(huge.space.exponent > 0);
   CHECK(huge.media[1].sigma_s.x == std::ldexp(4.0f, huge.space.exponent));

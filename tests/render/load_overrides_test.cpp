@@ -202,7 +202,8 @@ TEST_CASE("whatever shapes the picture changes the hash, names do not", "[load][
   std::set<std::string> with_media{hash_of(base)};
   const std::vector<void (*)(Scene&)> media_changes = {
       [](Scene& s) { s.media[0].sigma_a.x = 1; }, [](Scene& s) { s.media[0].sigma_s.z = 1; },
-      [](Scene& s) { s.media[0].g = 0.5f; }, [](Scene& s) { s.materials[0].interior = 1; }};
+      [](Scene& s) { s.media[0].g = 0.5f; }, [](Scene& s) { s.materials[0].interior = 1; },
+      [](Scene& s) { s.medium = 0; }};
   for (const auto change : media_changes) {
     Scene scene = base;
     change(scene);

@@ -33,8 +33,9 @@ void add_output(std::vector<Option>& table) {
   Option channels = parsed_option(
       "channels", "NAME,...", kOutput, "names of channels",
       "optional channels to write, comma-separated: default, which is normal, reflectance, "
-      "camera, visibility, hit_distance, direction, material, roughness, and what there is "
-      "unless given; film, lens, time, frame, alpha, kind, rest_position; or all",
+      "camera, visibility, hit_distance, direction, material, roughness, in scenes with volumes "
+      "kind, and what there is unless given; film, lens, time, frame, alpha, kind, rest_position; "
+      "or all",
       [](Job& job, const std::string& text) {
         job.settings.channels.push_back(text);
         return true;

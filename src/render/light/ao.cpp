@@ -37,7 +37,7 @@ PathRecord AoIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool sha
     if (std::isinf(distance)) return record;
     record.coverage = 1;
     record.distance += distance;
-    Vertex v = transport_.vertex(surface, walk.ray.direction);
+    Vertex v = transport_.vertex(surface, walk);
     if (v.bsdf.black()) return record;
     if (!transport_.select_lobe(v, walk, sampler)) {
       if (!transport_.scatter(v, walk, sampler) || !transport_.survives(walk, sampler)) break;
@@ -71,8 +71,8 @@ float AoIntegrator::look(const Vertex& x, Sampler& sampler, std::uint64_t& rays)
   Hit hit;
   const float reach = transport_.settings().ao_distance;
   const bool met =
-      transport_.caster().nearest(x.surface.origin_toward(direction), normalize(direction), reach,
-                                  x.surface.time, sampler, hit, rays);
+      transport_.meets({x.surface.origin_toward(direction), normalize(direction), x.surface.time},
+                       reach, sampler, hit, rays);
   return met ? hit.distance : std::numeric_limits<float>::infinity();
 }
 

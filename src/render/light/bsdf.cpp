@@ -40,6 +40,8 @@ Bsdf::Bsdf(const Material& material, const Scene& scene, const Vec2& uv, bool fr
     alpha_ = roughness_ * roughness_;
   }
   switch (material.kind) {
+    case MaterialKind::volume:  // no surface
+      break;
     case MaterialKind::diffuse:
       lobes_ = kDiffuse;
       break;
@@ -132,7 +134,7 @@ Rgb Bsdf::albedo() const {
 Rgb Bsdf::evaluate(const Vec3& o, const Vec3& i, float& pdf) const {
   if (lobes_ == kPhase) {
     pdf = phase(mean_cosine_, -i.z);
-    return Rgb(pdf);
+    return reflectance_ * pdf;
   }
   if (lobes_ == kBoundary) return Rgb(evaluate_boundary(o, i, pdf));
   pdf = 0;
@@ -176,8 +178,7 @@ bool Bsdf::sample(const Vec3& o, const Vec2& u, float choice, BsdfSample& sample
     const Vec3 along = sample_phase(mean_cosine_, u);
     sample.direction = Vec3(along.x, along.y, -along.z);
     sample.pdf = phase(mean_cosine_, along.z);
-    sample.weight = Rgb(1, 1, 1);
-    sample.inside = true;
+    sample.weight = reflectance_;
     return true;
   }
   if (o.z < kLeastCosine) return false;

@@ -55,8 +55,8 @@ class Bsdf {
        const CoatAlbedo* coat);
   // `material`: of the kind subsurface.
   [[nodiscard]] static Bsdf of_boundary(const Material& material);
-  // What was absorbed on the way here has been counted: the albedo is 1.
-  [[nodiscard]] static Bsdf of_medium(const Medium& medium);
+  // `albedo`: what is scattered.
+  [[nodiscard]] static Bsdf of_medium(const Medium& medium, const Rgb& albedo);
 
   [[nodiscard]] bool black() const { return lobes_ == 0; }
   // Whether every lobe is perfect, so that none can be evaluated and light sampling has no use.
@@ -69,6 +69,7 @@ class Bsdf {
   }
   // Whether light goes on in all directions, as in a medium.
   [[nodiscard]] bool everywhere() const { return lobes_ == kPhase; }
+  [[nodiscard]] bool is_glass() const { return lobes_ == kGlass; }
   // Whether there is a lobe into a body.
   [[nodiscard]] bool enters() const { return (lobes_ & kInto) != 0; }
   // Whether sample() uses its argument `choice`.

@@ -35,10 +35,10 @@ Bsdf Bsdf::of_boundary(const Material& material) {
   return bsdf;
 }
 
-Bsdf Bsdf::of_medium(const Medium& medium) {
+Bsdf Bsdf::of_medium(const Medium& medium, const Rgb& albedo) {
   Bsdf bsdf;
   bsdf.lobes_ = kPhase;
-  bsdf.reflectance_ = Rgb(1, 1, 1);
+  bsdf.reflectance_ = albedo;
   bsdf.mean_cosine_ = medium.g;
   return bsdf;
 }

@@ -62,6 +62,17 @@ std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Integrator
                 "paths from the lights (`vpl`, `photon`, `photons`) know no motion while the "
                 "shutter is open; use `path`, or the shutter 0:0");
   }
+  if (scene.has_volumes()) {
+    if (settings.name == "vpl" || settings.name == "photon" || settings.photons > 0) {
+      throw Error(ErrorCode::usage,
+                  "paths from the lights know no media between the surfaces, which the scene has; "
+                  "use the integrator path, without `photons`");
+    }
+    if (settings.vertices > 0) {
+      throw Error(ErrorCode::usage,
+                  "`vertices`: paths in media between the surfaces cannot be told yet");
+    }
+  }
   if (settings.photons > 0 && settings.name == "ao") {
     throw Error(ErrorCode::usage, "`photons`: the integrator ao has no lights");
   }

@@ -11,6 +11,9 @@
 // wherever it leaves, is in c_i; a smooth boundary is divided as a coat is. A passage through a body
 // is one surface interaction.
 //
+// In a medium between surfaces the first place where the path is scattered can be x_i too. Each such
+// place counts as a surface interaction.
+//
 // The pixel's value is the mean of u_i + alpha_i c_i, without bias except that of max_depth. u_i is
 // the light that does not pass through x_i: emission met on the camera segment, including that of
 // x_i's own surface; the sky; and light sampled at glossy vertices before x_i.
@@ -148,6 +151,8 @@ class Integrator {
   // The scene as it is ready for rays, for those that start at the lights; null where this
   // integrator knows no light.
   [[nodiscard]] virtual const Transport* light_transport() const { return nullptr; }
+  // Whether x_i can lie between the surfaces, in a medium.
+  [[nodiscard]] virtual bool has_volumes() const { return false; }
   // The layers of the light, as IntegratorSettings::layers asks for them.
   [[nodiscard]] virtual const std::vector<LayerInfo>& layers() const = 0;
   // The names of the lights in the order of their numbers; light l has visibility bit l mod 32.

@@ -35,8 +35,8 @@ void LightPaths::trace(std::uint64_t path, Sampler& sampler, std::uint64_t& rays
     Surface surface;
     if (std::isinf(transport_.next_surface(walk, surface, sampler, rays))) return;
     ++walk.depth;
-    const LightVertex vertex{transport_.vertex(surface, walk.ray.direction),
-                             emission.power * walk.throughput, emission.light, path, walk.depth};
+    const LightVertex vertex{transport_.vertex(surface, walk), emission.power * walk.throughput,
+                             emission.light, path, walk.depth};
     visit(vertex);
     if (vertex.at.bsdf.black()) return;
     if (!transport_.scatter_power(vertex.at, walk, sampler)) return;

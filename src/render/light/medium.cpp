@@ -36,7 +36,7 @@ Rgb flight_weight(const Medium& medium, const Ray&, const Rgb& carried, const Fl
   const float density = sum_of(flight.scattered ? choice * sigma * left : choice * left);
   // So far that nothing is left in single precision.
   if (!(density > 0)) return {0, 0, 0};
-  return (flight.scattered ? medium.sigma_s * left : left) * (1 / density);
+  return (flight.scattered ? sigma * left : left) * (1 / density);
 }
 
 Rgb transmittance(const Medium& medium, const Ray&, float distance, Sampler&) {

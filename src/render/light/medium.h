@@ -21,8 +21,9 @@ struct Flight {
 [[nodiscard]] float sample_distance(const Medium& medium, const Ray& ray, const Rgb& carried,
                                     Sampler& sampler);
 // By what the path is multiplied after this flight, by the balance heuristic over the channels that
-// could have been chosen: transmittance, and scattering where it was scattered, over the density of
-// the distance, or the probability of going so far.
+// could have been chosen: transmittance, and the coefficient of meeting something where it was
+// scattered, over the density of the distance, or the probability of going so far. The albedo is
+// still to come.
 [[nodiscard]] Rgb flight_weight(const Medium& medium, const Ray& ray, const Rgb& carried,
                                 const Flight& flight);
 // What of the light is left after `distance`.

@@ -49,6 +49,11 @@ class RayCaster {
   [[nodiscard]] float transmittance(const Vec3& origin, const Vec3& direction, float reach,
                                     float time, std::uint64_t& rays) const;
 
+  // The share of the light that passes a surface.
+  [[nodiscard]] float passed(const Surface& surface) const {
+    return opacities_.empty() ? 0.0f : 1 - opacity_of(surface);
+  }
+
  private:
   [[nodiscard]] float opacity_of(const Surface& surface) const;
   // The distance from which on a ray looks on that has passed this hit.

@@ -18,7 +18,7 @@ class PathIntegrator final : public VertexIntegrator {
     Walk walk;
     Surface surface;
     if (gather_direct(x, segment.depth, branch, walk, surface, sum) && indirect_ && enter(walk)) {
-      follow(transport().vertex(surface, walk.ray.direction), walk, branch, sum);
+      follow(transport().vertex(surface, walk), walk, branch, sum);
     }
     return sum;
   }

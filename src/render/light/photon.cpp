@@ -38,7 +38,7 @@ class PhotonIntegrator final : public VertexIntegrator {
     Surface surface;
     // Photons do not stand for what comes through a body.
     if (gather_direct(x, segment.depth, branch, walk, surface, sum) && walk.passed && enter(walk)) {
-      follow(transport().vertex(surface, walk.ray.direction), walk, branch, sum);
+      follow(transport().vertex(surface, walk), walk, branch, sum);
     }
     return sum;
   }

@@ -8,17 +8,15 @@ namespace {
 // A walk that carries less than this of what it brought in plays Russian roulette.
 constexpr float kFaint = 0.1f;
 
+// What is absorbed has been counted by the walk.
 Vertex medium_vertex(const Medium& medium, int material, const Ray& ray) {
-  Surface at;
-  at.time = ray.time;
-  at.position = ray.origin;
-  at.geometric_normal = at.normal = -ray.direction;
-  at.uv = Vec2(0, 0);
-  at.offset = 0;
-  at.material = material;
-  at.emitter = kNone;
-  at.front = true;
-  return {at, Bsdf::of_medium(medium), Frame(at.normal), -ray.direction, Vec3(0, 0, 1)};
+  const Surface at = Surface::in_medium(ray, kNone, material);
+  return {at,
+          Bsdf::of_medium(medium, Rgb(1, 1, 1)),
+          Frame(at.normal),
+          -ray.direction,
+          Vec3(0, 0, 1),
+          Media()};
 }
 
 // The other side of the surface that a ray met.
@@ -27,7 +25,8 @@ Vertex boundary_vertex(Surface surface, const Material& material, const Vec3& di
   surface.normal = -surface.normal;
   surface.front = true;
   const Frame frame(surface.normal);
-  return {surface, Bsdf::of_boundary(material), frame, -direction, frame.to_local(-direction)};
+  return {surface,    Bsdf::of_boundary(material), frame,
+          -direction, frame.to_local(-direction),  Media()};
 }
 
 }  // namespace
@@ -37,9 +36,11 @@ std::optional<Vertex> Transport::next_inside(Walk& walk, Sampler& sampler,
   const int body = walk.body;
   const Material& material = scene_.materials[static_cast<std::size_t>(body)];
   const Medium& medium = scene_.media[static_cast<std::size_t>(material.interior)];
+  const Rgb albedo = medium.albedo();
   const Vec3 start = walk.ray.origin;
   const auto arrive = [&](Vertex v) {
     v.bodies = v.bsdf.everywhere() ? walk.bodies : 0;
+    v.media = walk.media;
     if (walk.trail != nullptr) {
       walk.trail->arrive(v.surface, walk.ray.direction,
                          std::sqrt(length_sq(v.surface.position - start)));
@@ -53,7 +54,8 @@ std::optional<Vertex> Transport::next_inside(Walk& walk, Sampler& sampler,
     const bool met =
         accel_.intersect(walk.ray.origin, walk.ray.direction, hit, sampled, walk.ray.time);
     const Flight flight{!met, met ? hit.distance : sampled};
-    const Rgb weight = flight_weight(medium, walk.ray, walk.within, flight);
+    Rgb weight = flight_weight(medium, walk.ray, walk.within, flight);
+    if (flight.scattered) weight = weight * albedo;
     walk.within = walk.within * weight;
     walk.throughput = walk.throughput * weight;
     if (walk.trail != nullptr) walk.trail->attenuate(weight);

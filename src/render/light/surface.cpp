@@ -2,6 +2,7 @@
 #include "render/light/surface.h"
 
 #include "render/light/frame.h"
+#include "render/light/integrator.h"
 #include "render/scene/copies.h"
 #include "render/scene/motion.h"
 
@@ -73,6 +74,20 @@ Mat4 normal_placement(const Instance& instance) {
 }
 
 }  // namespace
+
+Surface Surface::in_medium(const Ray& ray, int medium, int material) {
+  Surface s;
+  s.position = s.rest = ray.origin;
+  s.geometric_normal = s.normal = -ray.direction;
+  s.uv = Vec2(0, 0);
+  s.offset = 0;
+  s.material = material;
+  s.emitter = kNone;
+  s.front = true;
+  s.time = ray.time;
+  s.medium = medium;
+  return s;
+}
 
 Shapes::Shapes(const Scene& scene) {
   const auto view = [](const Mesh& m) -> MeshView {

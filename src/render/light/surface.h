@@ -10,6 +10,8 @@
 
 namespace psf::render {
 
+struct Ray;
+
 struct Surface {
   Vec3 position;
   Vec3 geometric_normal;  // unit, on the side that the ray came from
@@ -25,11 +27,15 @@ struct Surface {
   float stretch = 1;
   Vec3 rest{0, 0, 0};  // the place of this point at frame 0, as far as the scene keeps it
   bool on_curve = false;
+  int medium = kNone;  // a place in this one of Scene::media instead of a surface
 
   // The normal as it is shaded for whoever looks along the unit `direction` at this side: where it
   // would face away, it is bent just into sight.
   [[nodiscard]] static Vec3 bent_into_sight(const Vec3& normal, const Vec3& geometric_normal,
                                             const Vec3& direction);
+
+  // A place in a medium, the origin of a ray that came there along its direction.
+  [[nodiscard]] static Surface in_medium(const Ray& ray, int medium, int material);
 
   // The origin of a ray toward `direction`, such that the ray does not meet this surface again.
   [[nodiscard]] Vec3 origin_toward(const Vec3& direction) const {

@@ -30,6 +30,7 @@ Transport::Transport(const Scene& scene, const IntegratorSettings& settings)
       shapes_(scene),
       caster_(scene, accel_, shapes_),
       lights_(scene, shapes_, accel_.radius()),
+      has_volumes_(scene.has_volumes()),
       coats_(scene.materials.size()) {
   std::map<float, std::shared_ptr<const CoatAlbedo>> tables;
   std::shared_ptr<const CoatAlbedo> gloss;
@@ -48,20 +49,27 @@ Transport::Transport(const Scene& scene, const IntegratorSettings& settings)
 float Transport::next_surface(const Walk& walk, Surface& surface, Sampler& sampler,
                               std::uint64_t& rays) const {
   Hit hit;
-  if (!caster_.nearest(walk.ray.origin, walk.ray.direction, kEndless, walk.ray.time, sampler, hit,
-                       rays)) {
-    return kEndless;
-  }
+  if (!meets(walk.ray, kEndless, sampler, hit, rays)) return kEndless;
   surface = shapes_.surface(hit, walk.ray.direction, walk.ray.time);
   if (walk.trail != nullptr) walk.trail->arrive(surface, walk.ray.direction, hit.distance);
   return hit.distance;
 }
 
-Vertex Transport::vertex(const Surface& surface, const Vec3& direction) const {
+Vertex Transport::vertex(const Surface& surface, const Walk& walk) const {
+  const Vec3 out = -walk.ray.direction;
+  if (surface.medium != kNone) {
+    const Medium& medium = scene_.media[static_cast<std::size_t>(surface.medium)];
+    return {surface,   Bsdf::of_medium(medium, medium.albedo()), Frame(out), out, Vec3(0, 0, 1),
+            walk.media};
+  }
   const auto m = static_cast<std::size_t>(surface.material);
   const Frame frame(surface.normal);
-  return {surface, Bsdf(scene_.materials[m], scene_, surface.uv, surface.front, coats_[m].get()),
-          frame, -direction, frame.to_local(-direction)};
+  return {surface,
+          Bsdf(scene_.materials[m], scene_, surface.uv, surface.front, coats_[m].get()),
+          frame,
+          out,
+          frame.to_local(out),
+          walk.media};
 }
 
 Rgb Transport::met(const Walk& walk, const Surface* surface, Tally& tally) const {
@@ -114,13 +122,7 @@ Rgb Transport::direct_from(std::size_t light, float probability, const Vertex& v
   Vec3 origin = v.surface.origin_toward(sample.direction);
   Rgb left(1, 1, 1);
   if (v.bodies > 0 && !leaves_body(v, sample, origin, left, sampler, rays)) return {0, 0, 0};
-  // Both ends lie off their surfaces; stopping a hair short keeps rounding from reaching the
-  // light's own.
-  const float time = v.surface.time;
-  const float seen =
-      sample.infinite
-          ? caster_.transmittance(origin, sample.direction, kEndless, time, rays)
-          : caster_.transmittance(origin, sample.target - origin, 1 - 0x1p-17f, time, rays);
+  const float seen = shines(origin, sample, v.surface.time, v.media, left, sampler, rays);
   if (!(seen > 0)) return {0, 0, 0};
   if (seen > kSeen && light < lights_.count()) visibility |= 1u << (light % kEveryLight);
 
@@ -176,12 +178,17 @@ bool Transport::go_on(const Vertex& v, const BsdfSample& sample, const Vec3& dir
     walk.pdf = sample.pdf;
     walk.from = v.surface.position;
   }
-  if (sample.inside && walk.body == kNone) {
+  const bool inside = sample.inside || v.bodies > 0;
+  if (inside && walk.body == kNone) {
     walk.bodies = 1;
     walk.within = Rgb(1, 1, 1);
   }
-  walk.body = sample.inside ? v.surface.material : kNone;
+  walk.body = inside ? v.surface.material : kNone;
   walk.ray = {v.surface.origin_toward(direction), normalize(direction), v.surface.time};
+  // Glass has no medium in it.
+  if (v.bsdf.is_glass() && sample.direction.z < 0) {
+    v.surface.front ? walk.media.enter(kNone) : walk.media.leave();
+  }
   return true;
 }
 
@@ -228,14 +235,16 @@ bool Transport::survives(Walk& walk, Sampler& sampler) const {
 void Transport::record_vertex(const Vertex& v, const Walk& walk, PathRecord& record) const {
   record.has_vertex = true;
   record.position = v.surface.position;
+  const bool in_volume = v.surface.medium != kNone;
   record.rest = v.surface.rest;
-  record.normal = v.surface.normal;
+  record.normal = in_volume ? Vec3(0, 0, 0) : v.surface.normal;
   record.reflectance = v.bsdf.albedo();
   record.throughput = walk.throughput;
   record.direction = v.out;
   record.material = static_cast<std::uint32_t>(v.surface.material);
   record.roughness = v.bsdf.least_roughness();
   if (v.surface.on_curve) record.kind = VertexKind::curve;
+  if (in_volume) record.kind = VertexKind::volume;
   if (walk.trail == nullptr) return;
   tell(v, walk);
   walk.trail->select();

@@ -10,6 +10,7 @@
 #include "render/light/frame.h"
 #include "render/light/integrator.h"
 #include "render/light/lights.h"
+#include "render/light/media.h"
 #include "render/light/opacity.h"
 #include "render/light/surface.h"
 #include "render/light/tally.h"
@@ -23,6 +24,7 @@ struct Vertex {
   Frame frame;
   Vec3 out;        // toward the previous vertex, unit
   Vec3 local;      // `out` in the frame
+  Media media;     // on the side of `out`
   int bodies = 0;  // of the bodies with a medium in which it is, where it is in any
 };
 
@@ -50,6 +52,7 @@ struct Walk {
   int bodies = 0;            // there: how many bodies of that medium overlap
   Rgb within{1, 1, 1};       // there: throughput since it came in
   bool passed = false;       // it came through a body
+  Media media;               // between the surfaces
 };
 
 class Transport {
@@ -66,11 +69,23 @@ class Transport {
   [[nodiscard]] const Lights& lights() const { return lights_; }
   [[nodiscard]] bool samples_every_light() const { return lights_.count() <= kEveryLight; }
 
+  // Whether x_i can lie between the surfaces.
+  [[nodiscard]] bool has_volumes() const { return has_volumes_; }
+  // The medium in which cameras and the rays of a walk begin.
+  [[nodiscard]] Media media() const { return Media(scene_.medium); }
   // Follows the walk's ray to the next surface, through masks and blended ones, and returns the
-  // distance; infinity for a miss.
+  // distance; infinity for a miss. Media between the surfaces are as if they were not there.
   [[nodiscard]] float next_surface(const Walk& walk, Surface& surface, Sampler& sampler,
                                    std::uint64_t& rays) const;
-  [[nodiscard]] Vertex vertex(const Surface& surface, const Vec3& direction) const;
+  // The same, where media between the surfaces count: the walk may come to a place in one, and the
+  // throughput is what arrives there.
+  [[nodiscard]] float arrive(Walk& walk, Surface& surface, Sampler& sampler,
+                             std::uint64_t& rays) const;
+  // Where the walk has arrived.
+  [[nodiscard]] Vertex vertex(const Surface& surface, const Walk& walk) const;
+  // Whether a surface is in the way up to origin + reach * direction; as for next_surface().
+  [[nodiscard]] bool meets(Ray ray, float reach, Sampler& sampler, Hit& hit,
+                           std::uint64_t& rays) const;
 
   // The emitted light that the walk's ray met at `surface`, or in the sky where it is null, times
   // the walk's throughput and weighted against light sampling. Adds it to `tally`.
@@ -117,6 +132,12 @@ class Transport {
   // the way. Moves `origin` off the boundary and multiplies `left` by the transmittance.
   [[nodiscard]] bool leaves_body(const Vertex& v, const LightSample& sample, Vec3& origin,
                                  Rgb& left, Sampler& sampler, std::uint64_t& rays) const;
+  // Whether `surface` is the boundary of a volume, which a ray along `direction` then has crossed.
+  [[nodiscard]] bool crosses(const Surface& surface, Media& media) const;
+  // The share of the light of `sample` that comes to `origin` through masks and blended surfaces;
+  // multiplies `left` by the transmittance of media.
+  [[nodiscard]] float shines(Vec3 origin, const LightSample& sample, float time, Media media,
+                             Rgb& left, Sampler& sampler, std::uint64_t& rays) const;
   // Tells the trail how `v` scatters.
   static void tell(const Vertex& v, const Walk& walk);
   [[nodiscard]] Rgb direct_from(std::size_t light, float probability, const Vertex& v,
@@ -129,6 +150,7 @@ class Transport {
   Shapes shapes_;
   RayCaster caster_;
   Lights lights_;
+  bool has_volumes_;
   std::vector<std::shared_ptr<const CoatAlbedo>> coats_;  // by material; equal ior share a table
 };
 

@@ -11,11 +11,12 @@ PathRecord VertexIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool
   walk.ray = camera_ray;
   walk.from = camera_ray.origin;
   walk.trail = details.trail;
+  walk.media = transport.media();
   Tally seen = Tally::of_camera(lit_->plan, details.layers);
   std::uint32_t no_bits = 0;
   for (;;) {
     Surface surface;
-    const float distance = transport.next_surface(walk, surface, sampler, rays);
+    const float distance = transport.arrive(walk, surface, sampler, rays);
     if (std::isinf(distance)) {
       record.unfiltered += transport.met(walk, nullptr, seen);
       return record;
@@ -24,7 +25,7 @@ PathRecord VertexIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool
     record.distance += distance;
     record.unfiltered += transport.met(walk, &surface, seen);
     if (!enter(walk)) return record;
-    Vertex v = transport.vertex(surface, walk.ray.direction);
+    Vertex v = transport.vertex(surface, walk);
     if (v.bsdf.black()) return record;
     if (transport.select_lobe(v, walk, sampler)) {
       transport.record_vertex(v, walk, record);
@@ -87,6 +88,7 @@ bool VertexIntegrator::gather_direct(const Vertex& x, int depth, Branch& branch,
                          Rgb(1, 1, 1));
   if (branch.trail != nullptr) branch.trail->add_direct(sum);
   walk.trail = branch.trail;
+  walk.media = x.media;
   branch.hit_distance = std::numeric_limits<float>::infinity();
   walk.depth = depth;
   walk.every_light = every;
@@ -99,7 +101,7 @@ bool VertexIntegrator::gather_direct(const Vertex& x, int depth, Branch& branch,
   }
   branch.tally.leave_vertex();
   if (!pass_body(walk, branch, sum)) return false;
-  branch.hit_distance = transport.next_surface(walk, surface, branch.sampler, branch.rays);
+  branch.hit_distance = transport.arrive(walk, surface, branch.sampler, branch.rays);
   const bool escaped = std::isinf(branch.hit_distance);
   sum += transport.met(walk, escaped ? nullptr : &surface, branch.tally);
   branch.tally.bounce();
@@ -144,11 +146,10 @@ void VertexIntegrator::follow(Vertex v, Walk& walk, Branch& branch, Rgb& sum) co
     if (!pass_body(walk, branch, sum)) return;
     if (!transport.survives(walk, branch.sampler)) return;
     Surface surface;
-    const bool escaped =
-        std::isinf(transport.next_surface(walk, surface, branch.sampler, branch.rays));
+    const bool escaped = std::isinf(transport.arrive(walk, surface, branch.sampler, branch.rays));
     sum += transport.met(walk, escaped ? nullptr : &surface, branch.tally);
     if (escaped || !enter(walk)) return;
-    v = transport.vertex(surface, walk.ray.direction);
+    v = transport.vertex(surface, walk);
   }
 }
 

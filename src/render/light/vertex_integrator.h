@@ -25,6 +25,7 @@ class VertexIntegrator : public Integrator {
                    const PathDetails& details) const override;
   const std::vector<LayerInfo>& layers() const override { return lit_->plan.layers(); }
   const Transport* light_transport() const override { return &lit_->transport; }
+  bool has_volumes() const override { return lit_->transport.has_volumes(); }
   std::vector<std::string> light_names() const override { return lit_->transport.lights().names(); }
 
  protected:

@@ -80,7 +80,7 @@ Rgb VplIntegrator::gather(const Vertex& x, const Segment& segment, Branch& branc
   Walk walk;
   Surface surface;
   if (!gather_direct(x, segment.depth, branch, walk, surface, sum) || !enter(walk)) return sum;
-  Vertex y = transport().vertex(surface, walk.ray.direction);
+  Vertex y = transport().vertex(surface, walk);
   // Virtual lights do not stand for what comes through a body, or out of one.
   const bool covered = !walk.passed && !y.bsdf.enters();
   if (covered && transport().select_lobe(y, walk, branch.sampler)) {

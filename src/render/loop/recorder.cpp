@@ -78,7 +78,7 @@ struct ColumnTable {
 };
 
 std::vector<formats::Channel> record_channels(std::span<const std::string> optional,
-                                              std::span<const LayerInfo> layers) {
+                                              std::span<const LayerInfo> layers, bool has_volumes) {
   using Use = ColumnTable::Use;
   const auto& rows = ColumnTable::rows();
   for (const std::string& name : optional) {
@@ -99,7 +99,9 @@ std::vector<formats::Channel> record_channels(std::span<const std::string> optio
   const bool all = has(kAllChannels), standard = optional.empty() || has(kDefaultChannels);
   std::vector<formats::Channel> channels;
   for (const auto& row : rows) {
-    const bool by_set = all || row.use == Use::always || (standard && row.use == Use::standard);
+    const bool is_standard =
+        row.use == Use::standard || (has_volumes && row.channel.name == "kind");
+    const bool by_set = all || row.use == Use::always || (standard && is_standard);
     if (by_set || has(row.channel.name)) channels.push_back(row.channel);
   }
   for (const LayerChannel& layer : layer_channels(layers)) {

@@ -100,7 +100,8 @@ class Loop {
         lights_(light_sampler(settings.sampler, frame_)),
         writer_(writer),
         shade_rate_(settings.shade_rate),
-        channels_(record_channels(settings.channels, integrator.layers())),
+        channels_(
+            record_channels(settings.channels, integrator.layers(), integrator.has_volumes())),
         has_sample_(has_sample(channels_)) {
     const bool moves = anything_moves(scene);
     result_.films.reserve(settings.cameras.size());

@@ -108,7 +108,7 @@ formats::Head make_head(const Scene& scene, const Integrator& integrator,
   for (const Material& material : scene.materials) metadata.materials.push_back(material.name);
 
   formats::Head head;
-  head.channels = record_channels(settings.channels, integrator.layers());
+  head.channels = record_channels(settings.channels, integrator.layers(), integrator.has_volumes());
   if (settings.integrator.vertices > 0) {
     head.tables.push_back(table_of("vertices", vertex_columns()));
   }

@@ -64,7 +64,7 @@ void add(Digest& digest, const Material& m) {
   digest.add(m.metalness);
   digest.add(m.roughness_metalness_texture);
   digest.add(m.ior);
-  if (m.kind == MaterialKind::subsurface) digest.add(m.interior);
+  if (m.interior != kNone) digest.add(m.interior);
   digest.add(int{m.two_sided});
   digest.add(int{m.emits_two_sided});
   digest.add(m.emission);
@@ -142,7 +142,10 @@ std::string hash_of(const Scene& scene) {
   add_all(digest, scene.textures);
   add_all(digest, scene.materials);
   // Scenes without media have the hash that they had before there were any.
-  if (!scene.media.empty()) add_all(digest, scene.media);
+  if (!scene.media.empty()) {
+    add_all(digest, scene.media);
+    digest.add(scene.medium);
+  }
   add_all(digest, scene.meshes);
   add_all(digest, scene.spheres);
   if (!scene.instances.empty()) {

@@ -16,6 +16,11 @@ struct Medium {
   // scattered forward.
   float g = 0;
 
+  // What is scattered of the light that meets something.
+  [[nodiscard]] Rgb albedo() const {
+    const auto part = [](float s, float a) { return s > 0 ? s / (s + a) : 0.0f; };
+    return {part(sigma_s.x, sigma_a.x), part(sigma_s.y, sigma_a.y), part(sigma_s.z, sigma_a.z)};
+  }
   [[nodiscard]] Rgb sigma_t() const { return sigma_a + sigma_s; }
 };
 

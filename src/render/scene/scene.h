@@ -1,6 +1,7 @@
 // A loaded scene: plain data that the loaders fill and the light transport reads.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -26,7 +27,8 @@ enum class MaterialKind : std::uint8_t {
   gloss,  // GGX, Fresnel by Schlick with `specular` at normal incidence, over a diffuse base
   // The closed surface of a body that is filled with the medium `interior`: a dielectric of `ior`,
   // smooth or GGX, or without one, where `ior` is 1. The body is seen at its surface.
-  subsurface
+  subsurface,
+  volume  // the same without a boundary that can be seen: what is seen is the medium in it
 };
 
 struct Material {
@@ -39,7 +41,7 @@ struct Material {
   float metalness = 0;
   int roughness_metalness_texture = kNone;  // glTF: G multiplies roughness, B multiplies metalness
   float ior = 1.5f;
-  int interior = kNone;  // index in Scene::media, of subsurface alone
+  int interior = kNone;  // index in Scene::media, of subsurface and volume alone
   // The share of the surface that is there: rays pass the rest. The red of the picture multiplies it.
   float opacity = 1;
   int opacity_texture = kNone;
@@ -188,6 +190,7 @@ struct Scene {
   std::vector<Curves> curves;
   std::vector<Light> lights;
   Environment environment;
+  int medium = kNone;  // index in `media` of what is between the surfaces
   std::vector<Camera> cameras;
   std::vector<std::string> files;     // other files that were read; some may occur more than once
   std::vector<std::string> warnings;  // what was repaired or left out while loading, one line each
@@ -197,6 +200,12 @@ struct Scene {
   Shutter shutter;  // around those of all cameras; rays have time 0 where it opens, 1 at its end
   Space space;
   Space wanted;  // where `exact` is set: the space in which the scene must be loaded instead
+
+  // Whether paths can be scattered between the surfaces.
+  [[nodiscard]] bool has_volumes() const {
+    const auto is_volume = [](const Material& m) { return m.kind == MaterialKind::volume; };
+    return medium != kNone || std::any_of(materials.begin(), materials.end(), is_volume);
+  }
 };
 
 }  // namespace psf::render

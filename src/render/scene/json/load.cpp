@@ -116,7 +116,7 @@ Light read_light(const JsonCursor& json, const Space& space) {
 void load_json(const std::string& path, Scene& scene) {
   const nlohmann::json document = read_json(path);
   const JsonCursor root(document, path);
-  root.check_keys({"cameras", "environment", "media", "materials", "shapes", "lights"});
+  root.check_keys({"cameras", "environment", "media", "medium", "materials", "shapes", "lights"});
   JsonLoad load(scene);
   for (const JsonCursor& camera : root.items("cameras"))
     scene.cameras.push_back(read_camera(camera, scene));
@@ -125,6 +125,7 @@ void load_json(const std::string& path, Scene& scene) {
     scene.environment = read_environment(*environment, load);
   }
   for (const JsonCursor& medium : root.items("media")) read_medium(medium, scene);
+  if (root.find("medium")) scene.medium = read_medium_name(root, "medium", scene);
   for (const JsonCursor& material : root.items("materials")) read_material(material, load);
   for (const JsonCursor& light : root.items("lights")) {
     scene.lights.push_back(read_light(light, scene.space));

@@ -6,12 +6,12 @@
 namespace psf::render {
 
 void read_material(const JsonCursor& json, JsonLoad& load) {
-  static constexpr std::string_view kKinds[] = {"diffuse",   "mirror", "glass",
-                                                "conductor", "coat",   "subsurface"};
+  static constexpr std::string_view kKinds[] = {"diffuse", "mirror",     "glass", "conductor",
+                                                "coat",    "subsurface", "volume"};
   // In the same order; `gloss` has no name here.
-  static constexpr MaterialKind kValues[] = {MaterialKind::diffuse, MaterialKind::mirror,
-                                             MaterialKind::glass,   MaterialKind::conductor,
-                                             MaterialKind::coat,    MaterialKind::subsurface};
+  static constexpr MaterialKind kValues[] = {
+      MaterialKind::diffuse, MaterialKind::mirror,     MaterialKind::glass, MaterialKind::conductor,
+      MaterialKind::coat,    MaterialKind::subsurface, MaterialKind::volume};
   json.check_keys({"name", "kind", "reflectance", "reflectance_map", "roughness", "metalness",
                    "roughness_metalness_map", "ior", "interior", "two_sided", "emission",
                    "emission_map", "emits_two_sided", "opacity", "opacity_map", "opacity_cutoff"});
@@ -31,10 +31,10 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
   if (const auto r = json.find("roughness")) material.roughness = r->number(kUnitRange);
   if (const auto m = json.find("metalness")) material.metalness = m->number(kUnitRange);
   if (const auto i = json.find("ior")) material.ior = i->number({1, 10, "in [1, 10]"});
-  if (material.kind == MaterialKind::subsurface) {
-    material.interior = read_interior(json, load.scene);
+  if (material.kind == MaterialKind::subsurface || material.kind == MaterialKind::volume) {
+    material.interior = read_medium_name(json, "interior", load.scene);
   } else if (const auto interior = json.find("interior")) {
-    interior->fail("only materials of the kind subsurface have one");
+    interior->fail("only materials of the kinds subsurface and volume have one");
   }
   if (const auto t = json.find("two_sided")) material.two_sided = t->boolean();
   if (const auto t = json.find("emits_two_sided")) material.emits_two_sided = t->boolean();

@@ -58,8 +58,8 @@ void read_medium(const JsonCursor& json, Scene& scene) {
   scene.media.push_back(std::move(medium));
 }
 
-int read_interior(const JsonCursor& json, const Scene& scene) {
-  const JsonCursor cursor = json.at("interior");
+int read_medium_name(const JsonCursor& json, std::string_view key, const Scene& scene) {
+  const JsonCursor cursor = json.at(key);
   const std::string name = cursor.text();
   const auto medium = std::find_if(scene.media.begin(), scene.media.end(),
                                    [&](const Medium& m) { return m.name == name; });

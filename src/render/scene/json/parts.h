@@ -24,8 +24,9 @@ struct JsonLoad {
 
 // Reads one medium of "media"; its name must be new.
 void read_medium(const JsonCursor& json, Scene& scene);
-// The index of the medium that the key "interior" names, which must be there.
-[[nodiscard]] int read_interior(const JsonCursor& json, const Scene& scene);
+// The index of the medium that `key` names, which must be there.
+[[nodiscard]] int read_medium_name(const JsonCursor& json, std::string_view key,
+                                   const Scene& scene);
 
 // Reads one material of "materials"; its name must be new.
 void read_material(const JsonCursor& json, JsonLoad& load);

@@ -1,0 +1,89 @@
+// Media between the surfaces: where a walk is scattered in them, and what of a light they let through.
+#include "render/light/medium.h"
+#include "render/light/transport.h"
+
+namespace psf::render {
+
+bool Transport::crosses(const Surface& surface, Media& media) const {
+  const Material& material = scene_.materials[static_cast<std::size_t>(surface.material)];
+  if (material.kind != MaterialKind::volume) return false;
+  surface.front ? media.enter(material.interior) : media.leave();
+  return true;
+}
+
+bool Transport::meets(Ray ray, float reach, Sampler& sampler, Hit& hit, std::uint64_t& rays) const {
+  float before = 0;
+  while (caster_.nearest(ray.origin, ray.direction, reach - before, ray.time, sampler, hit, rays)) {
+    hit.distance += before;
+    if (!has_volumes_) return true;
+    const Surface surface = shapes_.surface(hit, ray.direction, ray.time);
+    Media unused;
+    if (!crosses(surface, unused)) return true;
+    before = hit.distance;
+    ray.origin = surface.origin_toward(ray.direction);
+  }
+  return false;
+}
+
+float Transport::arrive(Walk& walk, Surface& surface, Sampler& sampler, std::uint64_t& rays) const {
+  if (!has_volumes_) return next_surface(walk, surface, sampler, rays);
+  constexpr float kUnbounded = std::numeric_limits<float>::infinity();
+  float before = 0;
+  for (;;) {
+    const int medium = walk.media.now();
+    const Medium* in = medium != kNone ? &scene_.media[static_cast<std::size_t>(medium)] : nullptr;
+    const float sampled =
+        in != nullptr ? sample_distance(*in, walk.ray, walk.throughput, sampler) : kUnbounded;
+    Hit hit;
+    const bool met = caster_.nearest(walk.ray.origin, walk.ray.direction, sampled, walk.ray.time,
+                                     sampler, hit, rays);
+    const Flight flight{!met && sampled < kUnbounded, met ? hit.distance : sampled};
+    if (in != nullptr) {
+      walk.throughput = walk.throughput * flight_weight(*in, walk.ray, walk.throughput, flight);
+    }
+    if (flight.scattered) {
+      Ray there = walk.ray;
+      there.origin += there.direction * sampled;
+      surface =
+          Surface::in_medium(there, medium, static_cast<int>(scene_.materials.size()) + medium);
+      return before + sampled;
+    }
+    if (!met) return kUnbounded;
+    surface = shapes_.surface(hit, walk.ray.direction, walk.ray.time);
+    before += hit.distance;
+    if (!crosses(surface, walk.media)) return before;
+    walk.ray.origin = surface.origin_toward(walk.ray.direction);
+  }
+}
+
+float Transport::shines(Vec3 origin, const LightSample& sample, float time, Media media, Rgb& left,
+                        Sampler& sampler, std::uint64_t& rays) const {
+  // Both ends lie off their surfaces; stopping a hair short keeps rounding from reaching the
+  // light's own.
+  constexpr float kShort = 1 - 0x1p-17f, kUnbounded = RayCaster::kEndless;
+  if (!has_volumes_) {
+    return sample.infinite
+               ? caster_.transmittance(origin, sample.direction, kUnbounded, time, rays)
+               : caster_.transmittance(origin, sample.target - origin, kShort, time, rays);
+  }
+  float share = 1;
+  for (;;) {
+    const float reach = sample.infinite ? kUnbounded : std::sqrt(length_sq(sample.target - origin));
+    ++rays;
+    Hit hit;
+    const bool met = accel_.intersect(origin, sample.direction, hit, reach * kShort, time);
+    if (media.now() != kNone) {
+      const Medium& medium = scene_.media[static_cast<std::size_t>(media.now())];
+      const float distance = met ? hit.distance : reach;
+      left = left * transmittance(medium, {origin, sample.direction}, distance, sampler);
+      if (is_black(left)) return 0;
+    }
+    if (!met) return share;
+    const Surface surface = shapes_.surface(hit, sample.direction, time);
+    if (!crosses(surface, media)) share *= caster_.passed(surface);
+    if (!(share > 0)) return 0;
+    origin = surface.origin_toward(sample.direction);
+  }
+}
+
+}  // namespace psf::render
