@@ -28,9 +28,9 @@ class VertexCut {
 
   // Changes the records of the paths of `range`, which are those of `out`. Where the rule selects
   // what the renderer has selected, a record stays as it is, to the last bit. A path of which it
-  // selects nothing has no vertex. Paths are cut in parallel, some thousand vertices at a time, which
-  // bounds the memory. Throws Error{bad_input} where a path has no chain of vertices, where chains are
-  // not in the order of the paths, and where a record has a vertex but its path has none.
+  // selects nothing has no vertex. Paths are cut in parallel, some thousand vertices at a time,
+  // which bounds the memory. Throws Error{bad_input} where a path has no chain of vertices, where
+  // chains are not in the order of the paths, and where a record has a vertex but its path has none.
   void apply(const filter::PathRange& range, BlockRecords& out) const;
   // Whether the vertices have a kind and the paths have none, so that apply() makes that channel. The
   // renderer's own choice stays as the paths have it.
@@ -42,7 +42,7 @@ class VertexCut {
   struct Vertices;  // of some paths
   void cut(std::uint64_t pass, std::uint64_t first, std::uint64_t last, std::size_t place,
            BlockRecords& out) const;
-  // The rows of paths [first, last) of a pass, numbers within it: the first, and the one behind them.
+  // The rows of paths [first, last) of a pass, numbers within it: the first, and that behind them.
   struct RowRange {
     std::uint64_t first, last;
   };

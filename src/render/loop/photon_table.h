@@ -21,8 +21,8 @@ struct PhotonRow {
 
 [[nodiscard]] const std::vector<TableColumn<PhotonRow>>& photon_columns();
 
-// The vertices of some of the `paths` light paths of a pass, in world units. Adds the number of rays
-// to `rays`.
+// The vertices of some of the `paths` light paths of a pass, in world units. Adds the number of
+// rays to `rays`.
 [[nodiscard]] std::vector<PhotonRow> trace_photon_rows(
     const Transport& transport, const Space& space, const SamplerSettings& sampler,
     std::uint64_t pass, std::uint64_t paths, const LightPaths::Some& some, std::uint64_t& rays);
