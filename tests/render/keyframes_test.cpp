@@ -3,31 +3,36 @@
 #include <numbers>
 
 #include "gltf_load.h"
-#include "motion_support.h"
+#include "moving_scene.h"
 
 namespace psf::render {
 namespace {
 
-const std::string kMove = R"(, "keyframes": [{"frame": 2, "translate": [1, 0, 0]},
+Scene keyed_scene(const std::string& text, double frame = 0) {
+  const TempFolder folder;
+  return load_scene(folder.write("s.json", text), {}, {frame}, true);
+}
+
+const std::string kKeyedMove = R"(, "keyframes": [{"frame": 2, "translate": [1, 0, 0]},
     {"frame": 6, "translate": [3, 4, 0], "easing": "step"},
     {"frame": 10, "translate": [0, 0, 8], "easing": "smooth"},
     {"frame": 14, "translate": [0, 0, 16]}])";
 
-Vec3 corner_at(const std::string& keys, double frame) {
-  return scene_of(moving_scene(keys), frame).meshes[0].positions[0];
+Vec3 keyed_corner(const std::string& keys, double frame) {
+  return keyed_scene(moving_scene(keys), frame).meshes[0].positions[0];
 }
 
 }  // namespace
 
 TEST_CASE("A keyed shape goes straight, waits or eases from key to key, and stays at the ends") {
   const Vec3 at(-0.5f, -0.5f, -2);
-  check_point(corner_at(kMove, -3), at + Vec3(1, 0, 0));
-  check_point(corner_at(kMove, 2), at + Vec3(1, 0, 0));
-  check_point(corner_at(kMove, 3), at + Vec3(1.5f, 1, 0));
-  check_point(corner_at(kMove, 6), at + Vec3(3, 4, 0));
-  check_point(corner_at(kMove, 9.5), at + Vec3(3, 4, 0));
-  check_point(corner_at(kMove, 11), at + Vec3(0, 0, 8 + 8 * (3 / 16.0f - 2 / 64.0f)));
-  check_point(corner_at(kMove, 99), at + Vec3(0, 0, 16));
+  check_point(keyed_corner(kKeyedMove, -3), at + Vec3(1, 0, 0));
+  check_point(keyed_corner(kKeyedMove, 2), at + Vec3(1, 0, 0));
+  check_point(keyed_corner(kKeyedMove, 3), at + Vec3(1.5f, 1, 0));
+  check_point(keyed_corner(kKeyedMove, 6), at + Vec3(3, 4, 0));
+  check_point(keyed_corner(kKeyedMove, 9.5), at + Vec3(3, 4, 0));
+  check_point(keyed_corner(kKeyedMove, 11), at + Vec3(0, 0, 8 + 8 * (3 / 16.0f - 2 / 64.0f)));
+  check_point(keyed_corner(kKeyedMove, 99), at + Vec3(0, 0, 16));
 }
 
 TEST_CASE("Keys scale, then turn the short way, then move; the shape's transform comes before") {
@@ -35,13 +40,13 @@ TEST_CASE("Keys scale, then turn the short way, then move; the shape's transform
       {"frame": 0, "scale": 1}, {"frame": 4, "scale": [3, 1, 1], "rotate": 120, "axis": "z",
       "translate": [0, 0, -5]}])";
   // The second corner begins at (1, 0, 0).
-  const Vec3 half = scene_of(moving_scene(keys), 2).meshes[0].positions[1];
+  const Vec3 half = keyed_scene(moving_scene(keys), 2).meshes[0].positions[1];
   const auto turned = static_cast<float>(std::numbers::pi / 3);
   check_point(half, {2 * std::cos(turned), 2 * std::sin(turned), -2.5f});
   // All copies move as the first does.
   const std::string copies =
-      kMove + R"(, "repeat": {"count": 2, "step": {"translate": [0, 9, 0]}})";
-  const Scene scene = scene_of(moving_scene(copies), 3);
+      kKeyedMove + R"(, "repeat": {"count": 2, "step": {"translate": [0, 9, 0]}})";
+  const Scene scene = keyed_scene(moving_scene(copies), 3);
   check_point(scene.meshes[0].positions[4] - scene.meshes[0].positions[0], {0, 9, 0});
   check_point(scene.meshes[0].positions[0], {1, 0.5f, -2});
 }
@@ -49,22 +54,22 @@ TEST_CASE("Keys scale, then turn the short way, then move; the shape's transform
 TEST_CASE("A keyed camera moves in straight lines, and what a key leaves out stays") {
   const std::string keys = R"(, "keyframes": [{"frame": 0}, {"frame": 4, "eye": [0, 2, 4],
       "fov": 93.13010235415598}, {"frame": 6, "target": [4, 0, -1], "focus_distance": 9}])";
-  const Camera middle = scene_of(moving_scene("", keys), 2).cameras[0];
+  const Camera middle = keyed_scene(moving_scene("", keys), 2).cameras[0];
   check_point(middle.eye, {0, 1, 2});
   check_point(middle.target, {0, 0, -1});
   CHECK(double{middle.fov} * 180 / std::numbers::pi == Approx(73.1301));
-  const Camera later = scene_of(moving_scene("", keys), 5).cameras[0];
+  const Camera later = keyed_scene(moving_scene("", keys), 5).cameras[0];
   check_point(later.eye, {0, 2, 4});
   check_point(later.target, {2, 0, -1});
   const std::string follows = R"(, "keyframes": [{"frame": 0, "eye": [0, 0, 2]}])";
-  CHECK(scene_of(moving_scene("", follows)).cameras[0].focus_distance == 3);
+  CHECK(keyed_scene(moving_scene("", follows)).cameras[0].focus_distance == 3);
 }
 
 TEST_CASE("What moves has its rest positions, those of frame 0") {
   const std::string other = R"(, {"shape": "sphere", "material": "white", "center": [0, 0, -9],
       "radius": 1, "keyframes": [{"frame": 0}, {"frame": 8, "translate": [8, 0, 0], "scale": 2}]},
       {"shape": "sphere", "material": "white", "center": [0, 0, 9], "radius": 1})";
-  const Scene scene = scene_of(moving_scene(kMove, "", other), 4);
+  const Scene scene = keyed_scene(moving_scene(kKeyedMove, "", other), 4);
   REQUIRE(scene.meshes[0].rest.size() == 4);
   check_point(scene.meshes[0].rest[0], {0.5f, -0.5f, -2});
   check_point(scene.meshes[0].positions[0], {1.5f, 1.5f, -2});
@@ -78,7 +83,7 @@ TEST_CASE("What moves has its rest positions, those of frame 0") {
 TEST_CASE(
     "The hash tells scenes that move otherwise apart, even where a frame shows no difference") {
   const auto hash = [](const std::string& keys, double frame) {
-    return scene_of(moving_scene(keys), frame).hash;
+    return keyed_scene(moving_scene(keys), frame).hash;
   };
   const std::string still = R"(, "keyframes": [{"frame": 0}])";
   const std::string away = R"(, "keyframes": [{"frame": 0}, {"frame": 5, "translate": [1, 0, 0]}])";

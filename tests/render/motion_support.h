@@ -1,31 +1,28 @@
-// Scenes of JSON with things that move, and dumps of them.
+// Scenes with things that move, and dumps of them.
 #pragma once
 
+#include <fstream>
 #include <string>
 
 #include "catch.h"
-#include "load_support.h"
+#include "core/error.h"
+#include "moving_scene.h"
 #include "render/job/job.h"
+#include "render/scene/load.h"
 #include "render_dump.h"
 
 namespace psf::render {
 
-// A scene of one white square of side 1 at z = -2, before a sky of radiance 3. The picture of the
-// camera is 2 wide and high there, 32 pixels. `square` and `camera`: keys of them, each after a comma.
-inline std::string moving_scene(const std::string& square, const std::string& camera = "",
-                                const std::string& more = "") {
-  return R"({"cameras": [{"name": "c", "eye": [0, 0, 0], "target": [0, 0, -1], "size": [32, 32],
-      "fov": 53.13010235415598)" +
-         camera + R"(}], "environment": {"radiance": 3}, "materials": [{"name": "white"},
-      {"name": "lamp", "reflectance": 0, "emission": 5}], "shapes": [{"shape": "quad",
-      "material": "white", "origin": [-0.5, -0.5, -2], "u": [1, 0, 0], "v": [0, 1, 0])" +
-         square + "}" + more + "]}";
+// Writes a file and returns its path.
+inline std::string written(const tests::TempFolder& folder, const std::string& name,
+                           const std::string& text) {
+  std::ofstream(folder / name) << text;
+  return folder / name;
 }
 
-inline Scene scene_of(const std::string& text, double frame = 0,
-                      const SceneOverrides& overrides = {}) {
-  const TempFolder folder;
-  return load_scene(folder.write("s.json", text), overrides, {frame}, true);
+inline Scene moving_scene_of(const std::string& text) {
+  const tests::TempFolder folder;
+  return load_scene(written(folder, "s.json", text));
 }
 
 inline Job quiet_job(const std::string& scene, const std::string& output, std::uint64_t passes) {
@@ -40,8 +37,8 @@ inline Job quiet_job(const std::string& scene, const std::string& output, std::u
 
 inline tests::Columns dump_of(const std::string& text, std::uint64_t passes,
                               const SceneOverrides& overrides = {}) {
-  const TempFolder folder;
-  Job job = quiet_job(folder.write("s.json", text), folder.write("a", "") + ".pvb", passes);
+  const tests::TempFolder folder;
+  Job job = quiet_job(written(folder, "s.json", text), folder / "a.pvb", passes);
   job.overrides = overrides;
   static_cast<void>(run_job(job));
   return tests::read_all(job.output);

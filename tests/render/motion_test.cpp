@@ -8,17 +8,18 @@
 namespace psf::render {
 namespace {
 
-const std::string kShutter = R"(, "shutter": [0, 0.5])";
+const std::string kOpenShutter = R"(, "shutter": [0, 0.5])";
 // Half a unit to the right while the shutter is open.
-const std::string kRight = R"(, "keyframes": [{"frame": 0}, {"frame": 1, "translate": [1, 0, 0]}])";
+const std::string kGoesRight =
+    R"(, "keyframes": [{"frame": 0}, {"frame": 1, "translate": [1, 0, 0]}])";
 
 // The part of the time for which the moving square covers a column of pixels, on average.
-double coverage_of_column(std::size_t column) {
+double column_coverage(std::size_t column) {
   const double x = (static_cast<double>(column) + 0.5) / 16 - 1;
   return std::clamp(std::min((x + 0.5) / 0.5, 1 - (x - 0.5) / 0.5), 0.0, 1.0);
 }
 
-void check_coverage(const tests::Columns& columns) {
+void check_column_coverage(const tests::Columns& columns) {
   const auto alpha = tests::values<float>(columns, "alpha");
   const auto pixel = tests::values<std::uint32_t>(columns, "pixel");
   std::vector<double> sum(32), count(32);
@@ -30,33 +31,35 @@ void check_coverage(const tests::Columns& columns) {
   }
   for (std::size_t x = 0; x < 32; ++x) {
     CAPTURE(x);
-    CHECK(sum[x] / count[x] == Approx(coverage_of_column(x)).margin(0.02));
+    CHECK(sum[x] / count[x] == Approx(column_coverage(x)).margin(0.02));
   }
 }
 
 }  // namespace
 
 TEST_CASE("A square that moves covers each pixel for as long as it is there") {
-  check_coverage(dump_of(moving_scene(kRight, kShutter), 64));
+  check_column_coverage(dump_of(moving_scene(kGoesRight, kOpenShutter), 64));
 }
 
 TEST_CASE("A camera that moves the other way sees the same") {
   const std::string keys =
       R"(, "keyframes": [{"frame": 0}, {"frame": 1, "eye": [-1, 0, 0], "target": [-1, 0, -1]}])";
-  check_coverage(dump_of(moving_scene("", kShutter + keys), 64));
+  check_column_coverage(dump_of(moving_scene("", kOpenShutter + keys), 64));
 }
 
 TEST_CASE("The shutter of the command line takes the place of the camera's") {
   SceneOverrides overrides;
   overrides.shutter = Shutter{0, 0.5f};
-  check_coverage(dump_of(moving_scene(kRight, R"(, "shutter": [-1, 1])"), 64, overrides));
+  check_column_coverage(
+      dump_of(moving_scene(kGoesRight, R"(, "shutter": [-1, 1])"), 64, overrides));
   overrides.shutter = Shutter{0, 0};
-  CHECK(dump_of(moving_scene(kRight, kShutter), 1, overrides) == dump_of(moving_scene(kRight), 1));
+  CHECK(dump_of(moving_scene(kGoesRight, kOpenShutter), 1, overrides) ==
+        dump_of(moving_scene(kGoesRight), 1));
 }
 
 TEST_CASE("A still scene with a shutter is one without, to the last byte") {
-  const std::string still = moving_scene("", kShutter);
-  CHECK(scene_of(still).hash == scene_of(moving_scene("")).hash);
+  const std::string still = moving_scene("", kOpenShutter);
+  CHECK(moving_scene_of(still).hash == moving_scene_of(moving_scene("")).hash);
   CHECK(dump_of(still, 2) == dump_of(moving_scene(""), 2));
 }
 
@@ -66,7 +69,7 @@ TEST_CASE("Every vertex lies on its shape where that is at the path's time") {
   const std::string turning = R"(, "transform": {"translate": [0, 0, 2]}, "keyframes": [
       {"frame": 0, "translate": [0, 0, -2], "scale": 0.5},
       {"frame": 1, "translate": [0, 0, -2], "scale": 0.5, "rotate": 170, "axis": "z"}])";
-  const tests::Columns columns = dump_of(moving_scene(turning, kShutter, ball), 8);
+  const tests::Columns columns = dump_of(moving_scene(turning, kOpenShutter, ball), 8);
   const auto position = tests::values<Vec3>(columns, "position");
   const auto rest = tests::values<Vec3>(columns, "rest_position");
   const auto time = tests::values<float>(columns, "time");
@@ -161,12 +164,12 @@ TEST_CASE("Lamps that move light the floor as they do on average over the time")
 }
 
 TEST_CASE("Paths from the lights are refused where shapes move while the shutter is open") {
-  const Scene scene = scene_of(moving_scene(kRight, kShutter));
+  const Scene scene = moving_scene_of(moving_scene(kGoesRight, kOpenShutter));
   for (const char* name : {"vpl", "photon"}) {
     IntegratorSettings settings;
     settings.name = name;
     CHECK_THROWS_AS(make_integrator(scene, settings), Error);
-    CHECK_NOTHROW(make_integrator(scene_of(moving_scene(kRight)), settings));
+    CHECK_NOTHROW(make_integrator(moving_scene_of(moving_scene(kGoesRight)), settings));
   }
 }
 
