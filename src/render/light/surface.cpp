@@ -26,20 +26,27 @@ Vec3 Surface::bent_into_sight(const Vec3& normal, const Vec3& geometric_normal,
 }
 
 Shapes::Shapes(const Scene& scene) {
+  reliefs_.reserve(scene.materials.size());
+  for (const Material& m : scene.materials) reliefs_.emplace_back(m, scene);
+  const auto relief = [&](int material) {
+    const Relief& found = reliefs_[static_cast<std::size_t>(material)];
+    return found.flat() ? nullptr : &found;
+  };
   meshes_.reserve(scene.meshes.size());
   for (const Mesh& m : scene.meshes) {
     meshes_.push_back({m.positions.data(), m.normals.empty() ? nullptr : m.normals.data(),
                        m.uvs.empty() ? nullptr : m.uvs.data(), m.triangles.data(), m.material,
-                       kNone});
+                       kNone, relief(m.material)});
   }
   spheres_.reserve(scene.spheres.size());
   for (const Sphere& s : scene.spheres) {
-    spheres_.push_back({s.center, s.radius, s.material, kNone});
+    spheres_.push_back({s.center, s.radius, s.material, kNone, relief(s.material)});
   }
 }
 
 Surface Shapes::surface(const Hit& hit, const Vec3& direction) const {
   Surface s;
+  Vec3 smooth;  // the shading normal without relief
   if (hit.geometry < meshes_.size()) {
     const MeshView& mesh = meshes_[hit.geometry];
     const auto& [a, b, c] = mesh.triangles[hit.primitive];
@@ -59,6 +66,12 @@ Surface Shapes::surface(const Hit& hit, const Vec3& direction) const {
     }
     s.uv = mesh.uvs != nullptr ? mesh.uvs[a] * w + mesh.uvs[b] * hit.u + mesh.uvs[c] * hit.v
                                : Vec2(hit.u, hit.v);
+    smooth = s.normal;
+    if (mesh.relief != nullptr && mesh.uvs != nullptr) {
+      const Chart chart = Chart::of_triangle(p1 - p0, p2 - p0, mesh.uvs[b] - mesh.uvs[a],
+                                             mesh.uvs[c] - mesh.uvs[a]);
+      s.normal = mesh.relief->normal(smooth, chart, s.uv);
+    }
     s.material = mesh.material;
     s.emitter = mesh.emitter;
   } else {
@@ -68,12 +81,17 @@ Surface Shapes::surface(const Hit& hit, const Vec3& direction) const {
     s.position = sphere.center + s.normal * sphere.radius;
     s.offset = (max_abs(sphere.center) + sphere.radius) * kOffsetScale;
     s.uv = direction_to_uv(s.normal);
+    smooth = s.normal;
+    if (sphere.relief != nullptr) {
+      const Chart chart = Chart::of_sphere(smooth, sphere.radius);
+      s.normal = sphere.relief->normal(smooth, chart, s.uv);
+    }
     s.material = sphere.material;
     s.emitter = sphere.emitter;
   }
   s.front = dot(direction, s.geometric_normal) < 0;
   if (!s.front) s.geometric_normal = -s.geometric_normal;
-  if (dot(s.normal, s.geometric_normal) < 0) s.normal = -s.normal;
+  if (dot(smooth, s.geometric_normal) < 0) s.normal = -s.normal;
   s.normal = Surface::bent_into_sight(s.normal, s.geometric_normal, direction);
   return s;
 }

@@ -6,6 +6,7 @@
 
 #include "core/vec.h"
 #include "render/accel/accel.h"
+#include "render/light/relief.h"
 #include "render/scene/scene.h"
 
 namespace psf::render {
@@ -63,13 +64,16 @@ class Shapes {
     const Vec2* uvs;      // null: the mesh has none
     const std::array<std::uint32_t, 3>* triangles;
     int material, emitter;
+    const Relief* relief;  // null: it is flat
   };
   struct SphereView {
     Vec3 center;
     float radius;
     int material, emitter;
+    const Relief* relief;
   };
 
+  std::vector<Relief> reliefs_;  // by material
   std::vector<MeshView> meshes_;
   std::vector<SphereView> spheres_;
 };
