@@ -89,6 +89,28 @@ def checker(x, y):
     return (224, 220, 210) if (x // 32 + y // 32) % 2 else (58, 62, 70)
 
 
+def leaf(x, y):
+    # A lattice of leaves: white where there is one.
+    u, v = (x % 32 - 15.5) / 15.5, (y % 32 - 15.5) / 15.5
+    return (255, 255, 255) if abs(u) < 0.85 * (1 - v * v) ** 1.5 else (0, 0, 0)
+
+
+def studs(x, y):
+    # Normals of round studs, green up.
+    u, v = (x % 32 - 15.5) / 12, (y % 32 - 15.5) / 12
+    steep = 0.8 if u * u + v * v < 1 else 0
+    nx, ny = steep * u, -steep * v
+    length = math.sqrt(nx * nx + ny * ny + 1)
+    # In steps that keep the palette small.
+    return tuple(round((c / length + 1) * 127.5 / 17) * 17 for c in (nx, ny, 1))
+
+
+def ripples(x, y):
+    d = math.hypot(x - 31.5, y - 31.5)
+    level = 128 + 127 * math.cos(d * 2 * math.pi / 12) * max(0, 1 - d / 32)
+    return level, level, level
+
+
 if __name__ == "__main__":
     write_png("planks.png", 128, 128, planks)
     write_png("bricks.png", 128, 128, bricks)
@@ -96,3 +118,6 @@ if __name__ == "__main__":
     write_png("carpet.png", 128, 128, carpet)
     write_png("window.png", 64, 96, window)
     write_png("checker.png", 64, 64, checker)
+    write_png("leaf.png", 128, 128, leaf)
+    write_png("studs.png", 32, 32, studs)
+    write_png("ripples.png", 64, 64, ripples)

@@ -102,6 +102,58 @@ TEST_CASE("Furnace: white gloss cannot be seen, whatever it reflects itself") {
   }
 }
 
+TEST_CASE("Furnace: white metal cannot be seen, however rough, in a room and under the sky") {
+  for (const float roughness : {0.0f, 0.25f, 0.5f, 0.75f, 1.0f}) {
+    Scene room = furnace(), open;
+    open.environment.radiance = grey(1);
+    for (Scene* scene : {&room, &open}) {
+      const int metal = add_material(*scene, MaterialKind::conductor, 1);
+      scene->materials.back().roughness = roughness;
+      scene->spheres.push_back({"", Vec3(0.4f, 0.1f, 0.1f), 0.4f, metal});
+      const auto integrator = make(*scene, "path", kEndless);
+      const Estimate e = estimate(*integrator, ray({-0.3f, 0.2f, 0.1f}, {0.4f, 0.3f, 0.1f}),
+                                  SamplerKind::sobol, 1024);
+      CAPTURE(roughness, e.mean, e.error);
+      CHECK(e.error < 0.002);
+      CHECK(std::abs(e.mean - 1) < 0.01);
+    }
+  }
+}
+
+TEST_CASE("Furnace: a diffuse ball under a constant sky has no noise at all") {
+  Scene scene;
+  const int ball = add_material(scene, MaterialKind::diffuse, 0.75f);
+  scene.spheres.push_back({"", Vec3(0, 0, 0), 1, ball});
+  scene.environment.radiance = grey(2);
+  for (const char* name : {"path", "direct", "vpl"}) {
+    const auto integrator = make(scene, name);
+    for (std::uint64_t i = 0; i < 256; ++i) {
+      const PathRecord r =
+          trace(*integrator, ray({0.3f, 0.2f, 4}, {0.1f, 0.2f, 0}), SamplerKind::independent, 0, i);
+      CHECK(pixel(r).y == 1.5f);
+    }
+  }
+}
+
+TEST_CASE("Furnace: a sky of one colour is the same light as a map of it, sampled by MIS") {
+  for (const MaterialKind kind : {MaterialKind::diffuse, MaterialKind::conductor}) {
+    Scene scene;
+    const int ball = add_material(scene, kind, 0.75f);
+    scene.materials.back().roughness = 0.6f;
+    scene.spheres.push_back({"", Vec3(0, 0, 0), 1, ball});
+    scene.environment.radiance = grey(2);
+    const Ray r = ray({0.3f, 0.2f, 4}, {0.1f, 0.2f, 0});
+    const Estimate constant = estimate(*make(scene, "path"), r, SamplerKind::sobol, 1024);
+    scene.environment.texture = 0;
+    scene.textures.emplace_back(8, 4, std::vector<Rgb>(32, grey(1)));
+    const Estimate map = estimate(*make(scene, "path"), r, SamplerKind::sobol, 4096);
+    CAPTURE(constant.mean, constant.error, map.mean, map.error);
+    CHECK(map.error < 0.003);
+    if (kind == MaterialKind::diffuse) CHECK(constant.error < 1e-6);
+    CHECK(std::abs(map.mean - constant.mean) < 3 * std::hypot(map.error, constant.error) + 1e-4);
+  }
+}
+
 TEST_CASE("Furnace: a conductor is never brighter than what it mirrors") {
   for (const float roughness : {0.0f, 0.2f, 0.6f, 1.0f}) {
     Scene scene = furnace();

@@ -79,7 +79,7 @@ TEST_CASE("Light sampling and scattering agree for every light with extent") {
     scene.spheres.push_back({"", {1, 1, 0.5f}, 0.7f, light});
   }
   SECTION("a blended sphere") {
-    scene.materials.back().opacity = 0.3f;
+    scene.materials.back().opacity = 0.75f;
     scene.spheres.push_back({"", {1, 1, 0.5f}, 0.7f, light});
   }
   SECTION("a mesh with holes") {

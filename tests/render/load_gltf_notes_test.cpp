@@ -87,8 +87,7 @@ TEST_CASE("what is left out of a file is named", "[load][gltf]") {
     return load(t);
   };
   const json base = {{"pbrMetallicRoughness", {{"baseColorTexture", texture}}}};
-  CHECK(notes(textured({{"name", "oak"}, {"normalTexture", texture}}),
-              "normal maps are left out: /materials/0 (oak)") == 1);
+  CHECK(notes(textured({{"normalTexture", texture}}), "left out") == 0);
   CHECK(notes(textured({{"occlusionTexture", texture}}), "occlusion maps are left out") == 1);
   CHECK(notes(textured(base, {{"wrapT", 33071}}), "repeat instead") == 1);
   CHECK(notes(textured(base, {{"magFilter", 9728}}), "are interpolated") == 1);

@@ -162,10 +162,10 @@ TEST_CASE("maps are found by the rest of the line behind their options", "[load]
 }
 
 TEST_CASE("what a library says and the picture does not show is named once", "[load][mtl]") {
-  CHECK(left_out_of("bump -bm 0.5 b.png\nmap_Bump b.png\nmap_bump b.png\nnorm n.png\ndisp h.png\n"
+  CHECK(left_out_of("disp h.png\n"
                     "decal d.png\nrefl -type sphere r.png\nmap_Ns s.png\nmap_Ks s.png\n"
-                    "map_aat on\nmap_Pr p.png\nbump c.png") ==
-        "bump, map_Bump, map_bump, norm, disp, decal, refl, map_Ns, map_Ks, map_aat, map_Pr");
+                    "map_aat on\nmap_Pr p.png") ==
+        "disp, decal, refl, map_Ns, map_Ks, map_aat, map_Pr");
   CHECK(left_out_of("Ni 1.45 1.45\nillum 2 3\nd 1 x\nKd 1 1 1 # white") ==
         "what follows the number of Ni, what follows the number of illum, what follows the number "
         "of d");

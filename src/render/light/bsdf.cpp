@@ -13,7 +13,7 @@ constexpr float kLeastCosine = 1e-7f;
 }  // namespace
 
 Bsdf::Bsdf(const Material& material, const Scene& scene, const Vec2& uv, bool front,
-           const CoatAlbedo* coat)
+           const CoatAlbedo* coat, const CoatAlbedo* white)
     : reflectance_(material.reflectance), specular_(material.specular) {
   const bool glass = material.kind == MaterialKind::glass;
   if (!front && !material.two_sided && !glass) return;
@@ -75,6 +75,28 @@ Bsdf::Bsdf(const Material& material, const Scene& scene, const Vec2& uv, bool fr
           body_albedo(scene.media[static_cast<std::size_t>(material.interior)], material.ior);
       break;
   }
+  if (white != nullptr && metalness_ > 0 && alpha_ >= kLeastAlpha) set_many_bounces(*white);
+}
+
+void Bsdf::set_many_bounces(const CoatAlbedo& white) {
+  white_ = white.row(roughness_);
+  const float lost = std::max(1e-6f, 1 - white_.mean);
+  for (int c = 0; c < 3; ++c) {
+    const float fresnel = reflectance_[c] + (1 - reflectance_[c]) / 21;  // Schlick's, on average
+    many_[c] = metalness_ * fresnel * fresnel * white_.mean / (1 - fresnel * lost) * kInvPi / lost;
+  }
+}
+
+Rgb Bsdf::many_bounces(float o_z, float i_z) const {
+  return many_ * (std::max(0.0f, 1 - white_.at(o_z)) * std::max(0.0f, 1 - white_.at(i_z)));
+}
+
+float Bsdf::many_probability(float o_z) const {
+  if (!many()) return 0;
+  const float once = white_.at(o_z), lost = std::max(0.0f, 1 - once);
+  const float many = luminance(many_) * kPi * lost * std::max(1e-6f, 1 - white_.mean);
+  const float single = once * luminance(glossy_fresnel(o_z));
+  return many > 0 ? std::clamp(many / (many + single), 0.01f, 0.99f) : 0;
 }
 
 Rgb Bsdf::glossy_fresnel(float cosine) const {
@@ -154,7 +176,13 @@ Rgb Bsdf::evaluate(const Vec3& o, const Vec3& i, float& pdf) const {
     const Vec3 h = normalize(o + i);
     const float d = ggx.d(h) / (4 * o.z);
     f += glossy_fresnel(std::min(1.0f, dot(o, h))) * (d * ggx.g2(o, i));
-    pdf += p_glossy * d * ggx.g1(o);
+    if (many()) {
+      const float p_many = many_probability(o.z);
+      f += many_bounces(o.z, i.z) * i.z;
+      pdf += p_glossy * (p_many * i.z * kInvPi + (1 - p_many) * d * ggx.g1(o));
+    } else {
+      pdf += p_glossy * d * ggx.g1(o);
+    }
   }
   return f;
 }
@@ -197,7 +225,9 @@ bool Bsdf::sample(const Vec3& o, const Vec2& u, float choice, BsdfSample& sample
       sample.pdf = 0;
       return true;
     }
-    sample.direction = reflect(o, Ggx{alpha_ * alpha_}.sample(o, u));
+    const bool bounces_often = many() && choice < p_glossy * many_probability(o.z);
+    sample.direction =
+        bounces_often ? cosine_hemisphere(u) : reflect(o, Ggx{alpha_ * alpha_}.sample(o, u));
   } else if (enters()) {
     return sample_into(o, u, 1 - p_glossy, sample);
   } else {

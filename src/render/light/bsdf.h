@@ -24,10 +24,14 @@ struct BsdfSample {
 // camera, with o.z > 0, and i the other one. By material:
 //
 //   diffuse    rho / pi.
-//   conductor  GGX with Schlick's Fresnel. Light that would bounce more than once between
-//              microfacets is lost, so a rough white conductor reflects less than 1.
+//   conductor  GGX with Schlick's Fresnel F, which is light that bounces once. Unless the material
+//              leaves it out, light that bounces more often is kept, too:
+//              M / pi (1 - E(o)) (1 - E(i)) / (1 - mean E), where E is the albedo of GGX alone and
+//              M = (mean F)^2 mean E / (1 - mean F (1 - mean E)) (Kulla and Conty 2017). So white
+//              reflects all that it gets, and the rougher a colour is the deeper.
 //   coat       (1 - m) (GGX with the dielectric's Fresnel + base) + m (GGX with Schlick's Fresnel),
-//              where m is the metalness. The base is
+//              where m is the metalness, and the metal is a
+//              conductor. The base is
 //              rho / pi (1 - E(o)) (1 - E(i)) / (1 - mean E) (Kelemen and Szirmay-Kalos 2001): it
 //              gets the light that the coat does not reflect on the way in and out. This replaces
 //              refraction and all interreflection between coat and base, without making the base's
@@ -50,9 +54,10 @@ class Bsdf {
   static constexpr std::uint8_t kInto = 32, kBoundary = 64, kPhase = 128;
 
   // `coat`: for coats the table of the material's ior, for gloss that of Schlick's Fresnel.
-  // `front`: the camera is on the front side.
+  // `white`: CoatAlbedo::white() for metals with multiple scattering, else null. `front`: the camera
+  // is on the front side.
   Bsdf(const Material& material, const Scene& scene, const Vec2& uv, bool front,
-       const CoatAlbedo* coat);
+       const CoatAlbedo* coat, const CoatAlbedo* white = nullptr);
   // `material`: of the kind subsurface.
   [[nodiscard]] static Bsdf of_boundary(const Material& material);
   // `albedo`: what is scattered.
@@ -74,7 +79,7 @@ class Bsdf {
   [[nodiscard]] bool enters() const { return (lobes_ & kInto) != 0; }
   // Whether sample() uses its argument `choice`.
   [[nodiscard]] bool chooses() const {
-    return lobes_ == kGlass || has_two() || (lobes_ == kBoundary && eta_ != 1);
+    return lobes_ == kGlass || has_two() || (lobes_ == kBoundary && eta_ != 1) || many();
   }
   // Perceptual roughness of the roughest lobe; 1 for diffuse and media, 0 for mirror and glass.
   [[nodiscard]] float roughness() const {
@@ -118,6 +123,13 @@ class Bsdf {
   // E of a gloss, from E for a specular reflectance of 1 (`white`) and of 0 (`edge`).
   [[nodiscard]] Rgb gloss_albedo(float white, float edge) const;
   [[nodiscard]] Rgb diffuse(float o_z, float i_z) const;
+  // Whether the glossy lobe has light of more than one bounce.
+  [[nodiscard]] bool many() const { return (lobes_ & kGlossy) != 0 && white_.lower != nullptr; }
+  // The radiance, over the light's, of more than one bounce.
+  [[nodiscard]] Rgb many_bounces(float o_z, float i_z) const;
+  // The probability of sampling it where the glossy lobe is sampled.
+  [[nodiscard]] float many_probability(float o_z) const;
+  void set_many_bounces(const CoatAlbedo& white);
   [[nodiscard]] bool sample_glass(const Vec3& o, float choice, BsdfSample& sample) const;
 
   // Of base or mirror; of a conductor at normal incidence; of a body; tint of glass.
@@ -129,9 +141,11 @@ class Bsdf {
   float eta_ = 1;          // index behind over index in front; of a boundary outside over inside
   float mean_cosine_ = 0;  // of scattering in a medium
   std::uint8_t lobes_ = 0;
-  bool mirror_ = false;     // Fresnel is 1
-  CoatAlbedo::Row coat_{};  // lower == null: no coat
-  CoatAlbedo::Row edge_{};  // lower == null: no gloss
+  bool mirror_ = false;      // Fresnel is 1
+  CoatAlbedo::Row coat_{};   // lower == null: no coat
+  CoatAlbedo::Row edge_{};   // lower == null: no gloss
+  CoatAlbedo::Row white_{};  // lower == null: one bounce alone
+  Rgb many_{0, 0, 0};        // the constant factor of many_bounces()
 };
 
 }  // namespace psf::render

@@ -31,10 +31,29 @@ float directional_albedo(float mu, float roughness, const Fresnel& fresnel) {
   return static_cast<float>(sum / (kSteps * kSteps));
 }
 
+float white_albedo(float mu, float roughness) {
+  const float alpha = roughness * roughness;
+  if (alpha < kLeastAlpha) return 1;
+  constexpr int kAround = 12, kOut = 80;
+  const Ggx ggx{alpha * alpha};
+  const Vec3 o(std::sqrt(std::max(0.0f, 1 - mu * mu)), 0, mu);
+  double sum = 0;
+  for (int a = 0; a < kAround; ++a) {
+    for (int b = 0; b < kOut; ++b) {
+      // Dense where u.y is 1, and the normals are far from the surface's.
+      const float t = (static_cast<float>(b) + 0.5f) / kOut;
+      const Vec2 u(0.5f * (static_cast<float>(a) + 0.5f) / kAround, 1 - t * t);
+      const Vec3 i = reflect(o, ggx.sample(o, u));
+      if (i.z > 0) sum += 2 * double{t} * double{ggx.g2(o, i) / ggx.g1(o)};
+    }
+  }
+  return static_cast<float>(std::min(1.0, sum / (kAround * kOut)));
+}
+
 }  // namespace
 
-template <class Fresnel>
-CoatAlbedo CoatAlbedo::tabulate(const Fresnel& fresnel) {
+template <class Directional>
+CoatAlbedo CoatAlbedo::tabulate(const Directional& directional) {
   CoatAlbedo albedo;
   core::parallel_for(kRoughnesses, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) {
@@ -42,7 +61,7 @@ CoatAlbedo CoatAlbedo::tabulate(const Fresnel& fresnel) {
       for (std::size_t c = 0; c < kCosines; ++c) {
         // mu = 0 itself has no projected area: take the limit from just above.
         const float mu = std::max(1e-4f, static_cast<float>(c) / (kCosines - 1));
-        albedo.table_[r][c] = directional_albedo(mu, roughness, fresnel);
+        albedo.table_[r][c] = directional(mu, roughness);
       }
       // 2 * integral of the piecewise linear E(mu) mu, exactly.
       double sum = 0;
@@ -59,13 +78,24 @@ CoatAlbedo CoatAlbedo::tabulate(const Fresnel& fresnel) {
 }
 
 CoatAlbedo::CoatAlbedo(float ior)
-    : CoatAlbedo(tabulate([ior](float cosine) { return fresnel_dielectric(cosine, ior); })) {}
+    : CoatAlbedo(tabulate([ior](float mu, float roughness) {
+        return directional_albedo(mu, roughness,
+                                  [ior](float cosine) { return fresnel_dielectric(cosine, ior); });
+      })) {}
 
 CoatAlbedo CoatAlbedo::schlick() {
-  CoatAlbedo albedo = tabulate([](float /*cosine*/) { return 1.0f; });
-  albedo.edge_ = std::make_shared<const CoatAlbedo>(
-      tabulate([](float cosine) { return fresnel_schlick(Rgb(0), cosine).x; }));
+  CoatAlbedo albedo = tabulate([](float mu, float roughness) {
+    return directional_albedo(mu, roughness, [](float /*cosine*/) { return 1.0f; });
+  });
+  albedo.edge_ = std::make_shared<const CoatAlbedo>(tabulate([](float mu, float roughness) {
+    return directional_albedo(mu, roughness,
+                              [](float cosine) { return fresnel_schlick(Rgb(0), cosine).x; });
+  }));
   return albedo;
+}
+
+CoatAlbedo CoatAlbedo::white() {
+  return tabulate(white_albedo);
 }
 
 CoatAlbedo::Row CoatAlbedo::row(float roughness) const {

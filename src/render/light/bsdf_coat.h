@@ -16,6 +16,9 @@ class CoatAlbedo {
   // The returned table E1 is for f0 = 1, its edge() E0 for f0 = 0; f0 E1 + (1 - f0) E0 is the
   // albedo for any f0.
   static CoatAlbedo schlick();
+  // The albedo of the lobe alone, as where all is reflected, for metals that keep what this lacks of
+  // 1: by finer quadrature than the others, as light is lost in the rare tail of the lobe.
+  static CoatAlbedo white();
   [[nodiscard]] const CoatAlbedo* edge() const { return edge_.get(); }  // null for a dielectric
 
   // One roughness, ready for many directions.
@@ -28,9 +31,9 @@ class CoatAlbedo {
   [[nodiscard]] Row row(float roughness) const;
 
  private:
-  // `fresnel` returns the reflectance for a cosine.
-  template <class Fresnel>
-  static CoatAlbedo tabulate(const Fresnel& fresnel);
+  // `directional` returns E for a cosine and a roughness.
+  template <class Directional>
+  static CoatAlbedo tabulate(const Directional& directional);
   CoatAlbedo() = default;
   static constexpr int kCosines = 64, kRoughnesses = 32;
   std::array<std::array<float, kCosines>, kRoughnesses> table_;

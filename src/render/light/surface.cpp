@@ -90,14 +90,21 @@ Surface Surface::in_medium(const Ray& ray, int medium, int material) {
 }
 
 Shapes::Shapes(const Scene& scene) {
-  const auto view = [](const Mesh& m) -> MeshView {
+  reliefs_.reserve(scene.materials.size());
+  for (const Material& m : scene.materials) reliefs_.emplace_back(m, scene);
+  const auto relief = [&](int material) {
+    const Relief& found = reliefs_[static_cast<std::size_t>(material)];
+    return found.flat() ? nullptr : &found;
+  };
+  const auto view = [&](const Mesh& m) -> MeshView {
     return {m.positions.data(),
             m.normals.empty() ? nullptr : m.normals.data(),
             m.uvs.empty() ? nullptr : m.uvs.data(),
             m.triangles.data(),
             m.material,
             kNone,
-            &m};
+            &m,
+            relief(m.material)};
   };
   meshes_.reserve(scene.meshes.size());
   for (const Mesh& m : scene.meshes) meshes_.push_back(view(m));
@@ -113,14 +120,15 @@ Shapes::Shapes(const Scene& scene) {
   }
   spheres_.reserve(scene.spheres.size());
   for (const Sphere& s : scene.spheres) {
-    spheres_.push_back({s.center, s.radius, s.material, kNone, &s});
+    spheres_.push_back({s.center, s.radius, s.material, kNone, &s, relief(s.material)});
   }
   curves_.reserve(scene.curves.size());
   for (const Curves& c : scene.curves)
     curves_.push_back({c.points.data(), c.segments.data(), c.material});
 }
 
-void Shapes::on_mesh(const MeshView& mesh, const Hit& hit, const Vec3& direction, Surface& s) {
+const Relief* Shapes::on_mesh(const MeshView& mesh, const Hit& hit, const Vec3& direction,
+                              Surface& s, Chart& chart) {
   const auto& [a, b, c] = mesh.triangles[hit.primitive];
   Vec3 p0 = mesh.positions[a], p1 = mesh.positions[b], p2 = mesh.positions[c];
   const bool moves = !mesh.mesh->motion.empty();
@@ -153,11 +161,16 @@ void Shapes::on_mesh(const MeshView& mesh, const Hit& hit, const Vec3& direction
   s.emitter = mesh.emitter;
   const std::vector<Vec3>& rest = mesh.mesh->rest;
   s.rest = rest.empty() ? s.position : rest[a] * w + rest[b] * hit.u + rest[c] * hit.v;
+  if (mesh.relief == nullptr || mesh.uvs == nullptr) return nullptr;
+  chart =
+      Chart::of_triangle(p1 - p0, p2 - p0, mesh.uvs[b] - mesh.uvs[a], mesh.uvs[c] - mesh.uvs[a]);
+  return mesh.relief;
 }
 
-void Shapes::on_instance(const Hit& hit, const Vec3& direction, Surface& s) const {
+const Relief* Shapes::on_instance(const Hit& hit, const Vec3& direction, Surface& s,
+                                  Chart& chart) const {
   const InstanceView& instance = instances_[hit.instance];
-  on_mesh(prototypes_[instance.prototype], hit, direction, s);
+  const Relief* relief = on_mesh(prototypes_[instance.prototype], hit, direction, s, chart);
   s.rest = s.position = s.position * instance.placement;
   s.offset = instance.offset;
   const bool interpolated = s.normal != s.geometric_normal;
@@ -168,9 +181,15 @@ void Shapes::on_instance(const Hit& hit, const Vec3& direction, Surface& s) cons
   };
   s.geometric_normal = placed(s.geometric_normal);
   s.normal = interpolated ? placed(s.normal) : s.geometric_normal;
+  if (relief != nullptr) {
+    const Chart before = chart;
+    instance.placement.multDirMatrix(before.by_u, chart.by_u);
+    instance.placement.multDirMatrix(before.by_v, chart.by_v);
+  }
+  return relief;
 }
 
-void Shapes::on_sphere(const Hit& hit, Surface& s) const {
+const Relief* Shapes::on_sphere(const Hit& hit, Surface& s, Chart& chart) const {
   const SphereView& sphere = spheres_[hit.primitive];
   s.geometric_normal = normalize(hit.normal);
   s.normal = s.geometric_normal;
@@ -183,6 +202,8 @@ void Shapes::on_sphere(const Hit& hit, Surface& s) const {
   s.uv = direction_to_uv(s.normal);
   s.material = sphere.material;
   s.emitter = sphere.emitter;
+  if (sphere.relief != nullptr) chart = Chart::of_sphere(s.normal, ball.radius);
+  return sphere.relief;
 }
 
 void Shapes::on_curve(const CurvesView& curves, const Hit& hit, Surface& s) {
@@ -218,18 +239,22 @@ void Shapes::on_curve(const CurvesView& curves, const Hit& hit, Surface& s) {
 Surface Shapes::surface(const Hit& hit, const Vec3& direction, float time) const {
   Surface s;
   s.time = time;
+  const Relief* relief = nullptr;
+  Chart chart;
   if (hit.instance != Hit::kNoInstance) {
-    on_instance(hit, direction, s);
+    relief = on_instance(hit, direction, s, chart);
   } else if (hit.geometry < meshes_.size()) {
-    on_mesh(meshes_[hit.geometry], hit, direction, s);
+    relief = on_mesh(meshes_[hit.geometry], hit, direction, s, chart);
   } else if (hit.geometry == meshes_.size()) {
-    on_sphere(hit, s);
+    relief = on_sphere(hit, s, chart);
   } else {
     on_curve(curves_[hit.geometry - meshes_.size() - 1], hit, s);
   }
   s.front = dot(direction, s.geometric_normal) < 0;
   if (!s.front) s.geometric_normal = -s.geometric_normal;
-  if (dot(s.normal, s.geometric_normal) < 0) s.normal = -s.normal;
+  const Vec3 smooth = s.normal;
+  if (relief != nullptr) s.normal = relief->normal(smooth, chart, s.uv);
+  if (dot(smooth, s.geometric_normal) < 0) s.normal = -s.normal;
   s.normal = Surface::bent_into_sight(s.normal, s.geometric_normal, direction);
   return s;
 }

@@ -6,6 +6,7 @@
 
 #include "core/vec.h"
 #include "render/accel/accel.h"
+#include "render/light/relief.h"
 #include "render/scene/scene.h"
 
 namespace psf::render {
@@ -76,12 +77,14 @@ class Shapes {
     const std::array<std::uint32_t, 3>* triangles;
     int material, emitter;
     const Mesh* mesh;
+    const Relief* relief;  // null: it is flat
   };
   struct SphereView {
     Vec3 center;
     float radius;
     int material, emitter;
     const Sphere* sphere;
+    const Relief* relief;
   };
   struct CurvesView {
     const CurvePoint* points;
@@ -95,12 +98,15 @@ class Shapes {
     Mat4 normal_placement;  // of normals, up to their length
   };
 
-  // Sets all but the sides, which depend on the direction; that is the normal of what has none.
-  static void on_mesh(const MeshView& mesh, const Hit& hit, const Vec3& direction, Surface& s);
-  void on_instance(const Hit& hit, const Vec3& direction, Surface& s) const;
-  void on_sphere(const Hit& hit, Surface& s) const;
+  // These set all but the sides, which depend on the direction; that is the normal of what has none.
+  // They return the relief that turns the normal, and set its chart; null: there is none.
+  static const Relief* on_mesh(const MeshView& mesh, const Hit& hit, const Vec3& direction,
+                               Surface& s, Chart& chart);
+  const Relief* on_instance(const Hit& hit, const Vec3& direction, Surface& s, Chart& chart) const;
+  const Relief* on_sphere(const Hit& hit, Surface& s, Chart& chart) const;
   static void on_curve(const CurvesView& curves, const Hit& hit, Surface& s);
 
+  std::vector<Relief> reliefs_;  // by material
   std::vector<MeshView> meshes_, prototypes_;
   std::vector<InstanceView> instances_;
   std::vector<CurvesView> curves_;

@@ -31,15 +31,21 @@ Transport::Transport(const Scene& scene, const IntegratorSettings& settings)
       caster_(scene, accel_, shapes_),
       lights_(scene, shapes_, accel_.radius()),
       has_volumes_(scene.has_volumes()),
-      coats_(scene.materials.size()) {
+      coats_(scene.materials.size()),
+      metals_(scene.materials.size()) {
   std::map<float, std::shared_ptr<const CoatAlbedo>> tables;
-  std::shared_ptr<const CoatAlbedo> gloss;
+  std::shared_ptr<const CoatAlbedo> schlick, white;
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-    if (scene.materials[m].kind == MaterialKind::gloss) {
-      if (gloss == nullptr) gloss = std::make_shared<CoatAlbedo>(CoatAlbedo::schlick());
-      coats_[m] = gloss;
-    }
-    if (scene.materials[m].kind != MaterialKind::coat) continue;
+    const MaterialKind kind = scene.materials[m].kind;
+    const bool gloss = kind == MaterialKind::gloss;
+    const bool metal = scene.materials[m].multiple_scattering &&
+                       (kind == MaterialKind::conductor ||
+                        (kind == MaterialKind::coat && scene.materials[m].metalness > 0));
+    if (gloss && schlick == nullptr) schlick = std::make_shared<CoatAlbedo>(CoatAlbedo::schlick());
+    if (metal && white == nullptr) white = std::make_shared<CoatAlbedo>(CoatAlbedo::white());
+    if (gloss) coats_[m] = schlick;
+    if (metal) metals_[m] = white;
+    if (kind != MaterialKind::coat) continue;
     auto& table = tables[scene.materials[m].ior];
     if (table == nullptr) table = std::make_shared<CoatAlbedo>(scene.materials[m].ior);
     coats_[m] = table;
@@ -65,7 +71,8 @@ Vertex Transport::vertex(const Surface& surface, const Walk& walk) const {
   const auto m = static_cast<std::size_t>(surface.material);
   const Frame frame(surface.normal);
   return {surface,
-          Bsdf(scene_.materials[m], scene_, surface.uv, surface.front, coats_[m].get()),
+          Bsdf(scene_.materials[m], scene_, surface.uv, surface.front, coats_[m].get(),
+               metals_[m].get()),
           frame,
           out,
           frame.to_local(out),

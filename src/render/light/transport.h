@@ -152,6 +152,8 @@ class Transport {
   Lights lights_;
   bool has_volumes_;
   std::vector<std::shared_ptr<const CoatAlbedo>> coats_;  // by material; equal ior share a table
+  // By material: null where no light of many bounces between microfacets is kept.
+  std::vector<std::shared_ptr<const CoatAlbedo>> metals_;
 };
 
 }  // namespace psf::render

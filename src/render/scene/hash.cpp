@@ -69,6 +69,19 @@ void add(Digest& digest, const Material& m) {
   digest.add(int{m.emits_two_sided});
   digest.add(m.emission);
   digest.add(m.emission_texture);
+  const bool metal =
+      m.kind == MaterialKind::conductor || (m.kind == MaterialKind::coat && m.metalness > 0);
+  if (metal && m.multiple_scattering) digest.add(1);
+  if (m.normal_texture != kNone) {
+    digest.add(2);
+    digest.add(m.normal_texture);
+    digest.add(m.normal_scale);
+  }
+  if (m.bump_texture != kNone) {
+    digest.add(3);
+    digest.add(m.bump_texture);
+    digest.add(m.bump_height);
+  }
   if (m.opacity < 1 || m.opacity_texture != kNone) {
     digest.add(m.opacity);
     digest.add(m.opacity_texture);

@@ -39,6 +39,7 @@ struct Material {
   Rgb specular{0, 0, 0};            // reflectance of gloss at normal incidence
   float roughness = 0.5f;           // perceptual: GGX alpha = roughness^2
   float metalness = 0;
+  bool multiple_scattering = true;  // of metals: light that bounces between microfacets is kept
   int roughness_metalness_texture = kNone;  // glTF: G multiplies roughness, B multiplies metalness
   float ior = 1.5f;
   int interior = kNone;  // index in Scene::media, of subsurface and volume alone
@@ -46,7 +47,13 @@ struct Material {
   float opacity = 1;
   int opacity_texture = kNone;
   float opacity_cutoff = 0;  // above 0: all of it is there from this opacity on, and nothing below
-  bool two_sided = true;     // false: the back side reflects nothing
+  // Relief, which turns the shading normal: x of a tangent-space normal is along u, y along v, and
+  // `normal_scale` multiplies both; of heights white is `bump_height` above black.
+  int normal_texture = kNone;
+  float normal_scale = 1;
+  int bump_texture = kNone;
+  float bump_height = 0;  // in the unit of the scene's space
+  bool two_sided = true;  // false: the back side reflects nothing
   bool emits_two_sided = false;
   Rgb emission{0, 0, 0};  // radiance of the front side
   int emission_texture = kNone;

@@ -36,6 +36,33 @@ Texture::Texture(std::size_t width, std::size_t height, std::vector<Rgb> texels)
   }
 }
 
+bool Texture::grey() const {
+  double sum = 0;
+  for (std::size_t i = 0; i < width_ * height_; ++i) {
+    const Rgb c = texel(i % width_, i / width_);
+    sum += double{std::abs(c.x - c.z)};
+  }
+  constexpr double kMostColour = 0.05;  // lossy formats add a little; the blue of flat is 0.5 above
+  return sum < kMostColour * static_cast<double>(width_ * height_);
+}
+
+Texture Texture::normals_of_heights() const {
+  std::vector<Rgb> normals(width_ * height_);
+  const auto height = [&](std::size_t x, std::size_t y) {
+    const Rgb c = texel(x % width_, y % height_);
+    return (c.x + c.y + c.z) * (1.0f / 3);
+  };
+  for (std::size_t y = 0; y < height_; ++y) {
+    for (std::size_t x = 0; x < width_; ++x) {
+      const float by_u = 0.5f * (height(x + 1, y) - height(x + width_ - 1, y));
+      const float by_v = 0.5f * (height(x, y + height_ - 1) - height(x, y + 1));
+      const Vec3 n = Vec3(-by_u, -by_v, 1).normalized();
+      normals[y * width_ + x] = Rgb(0.5f * n.x + 0.5f, 0.5f * n.y + 0.5f, 0.5f * n.z + 0.5f);
+    }
+  }
+  return {width_, height_, std::move(normals)};
+}
+
 Rgb Texture::at(const Vec2& uv) const {
   const Wrapped x = wrap(uv.x, width_);
   const Wrapped y = wrap(1 - uv.y, height_);

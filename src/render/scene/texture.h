@@ -19,6 +19,7 @@ namespace psf::render {
 enum class TextureUse {
   reflectance,  // colours in [0, 1]
   numbers,      // as stored, in [0, 1]
+  relief,       // tangent-space normals, so stored; a grey picture is of heights, and becomes those
   alpha,        // the alpha channel as grey numbers; 1 where there is none
   opacity,      // the same; where there is no alpha, the luminance of the numbers as stored
   radiance      // colours of at least 0; premultiplied colours stay premultiplied
@@ -47,6 +48,12 @@ class Texture {
   // given; empty where there is a reader.
   static std::string why_unreadable(const std::string& path,
                                     std::span<const unsigned char> bytes = {});
+
+  // The tangent-space normals, x along u and y along v, of heights whose white is above black by the width of a
+  // texel.
+  [[nodiscard]] Texture normals_of_heights() const;
+  // Whether its colours differ so little that it is no picture of colours.
+  [[nodiscard]] bool grey() const;
 
   [[nodiscard]] Rgb at(const Vec2& uv) const;  // u to the right, v up
   [[nodiscard]] std::size_t width() const { return width_; }

@@ -126,7 +126,7 @@ ColourChannels colour_channels(const std::string& name, const OIIO::ImageSpec& s
 std::function<float(float)> transfer_curve(const std::string& name, const OIIO::ImageSpec& spec,
                                            TextureUse use, bool plain) {
   const auto linear = [](float value) { return value; };
-  if (use == TextureUse::numbers) return linear;
+  if (use == TextureUse::numbers || use == TextureUse::relief) return linear;
   const bool integer = !spec.format.is_floating_point();
   if (plain) return integer ? std::function<float(float)>(srgb_to_linear) : linear;
   const std::string space = spec.get_string_attribute("oiio:ColorSpace");

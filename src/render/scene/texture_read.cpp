@@ -194,7 +194,8 @@ Texture Texture::load(const std::string& path, TextureUse use, std::vector<std::
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))
     throw Error(ErrorCode::io, path + ": no such picture");
-  return read(path, {}, use, notes, plain);
+  Texture texture = read(path, {}, use, notes, plain);
+  return use == TextureUse::relief && texture.grey() ? texture.normals_of_heights() : texture;
 }
 
 Texture Texture::decode(std::span<const unsigned char> bytes, const std::string& name,
@@ -240,8 +241,9 @@ Texture Texture::read(const std::string& name, std::span<const unsigned char> by
     return texture;
   }
   const auto values = read_values<float>(name, input, spec, notes);
-  const auto matrix =
-      plain || use == TextureUse::numbers ? std::optional<Imath::M33f>() : to_rec709(spec);
+  const auto matrix = plain || use == TextureUse::numbers || use == TextureUse::relief
+                          ? std::optional<Imath::M33f>()
+                          : to_rec709(spec);
   const TexelOpacity opacity(spec, c, use);
   ValueRange range(name, use, texture.width_);
   texture.texels_.resize(count, Rgb(0));

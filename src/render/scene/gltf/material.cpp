@@ -24,10 +24,11 @@ struct Reader {
 
   void leave_out(const std::string& what) { load.leave_out(what, place); }
 
-  int texture(const JsonCursor& object, const char* key, TextureUse use, const char* slot) {
+  int texture(const JsonCursor& object, const char* key, TextureUse use, const char* slot,
+              std::initializer_list<std::string_view> known = {"index", "texCoord"}) {
     const auto info = object.find(key);
     if (!info) return kNone;
-    load.check_keys(*info, {"index", "texCoord"});
+    load.check_keys(*info, known);
     const int found = gltf_texture(load, *info, use, fmt::format("{}: {}", place, slot));
     const GltfCoordinates c = gltf_coordinates(load, *info);
     if (found == kNone) return kNone;
@@ -61,6 +62,7 @@ struct Reader {
   void transmission(const JsonCursor& extension);
   void unlit();
   void alpha();
+  void relief();
   void note_others();
   Material convert();
 };
@@ -217,8 +219,15 @@ void Reader::alpha() {
       texture(*pbr, glossy ? "diffuseTexture" : "baseColorTexture", TextureUse::alpha, "alpha");
 }
 
+void Reader::relief() {
+  const auto info = json.find("normalTexture");
+  if (!info) return;
+  material.normal_texture = texture(json, "normalTexture", TextureUse::numbers, "normals",
+                                    {"index", "texCoord", "scale"});
+  material.normal_scale = number(*info, "scale", 1, kAnyNumber);
+}
+
 void Reader::note_others() {
-  if (json.find("normalTexture")) leave_out("normal maps are left out");
   if (json.find("occlusionTexture"))
     leave_out("occlusion maps are left out, the paths find it themselves");
 }
@@ -244,6 +253,7 @@ Material Reader::convert() {
     transmission(*extension);
   if (find_extension(json, "KHR_materials_unlit")) unlit();
   alpha();
+  relief();
   note_others();
   return std::move(material);
 }

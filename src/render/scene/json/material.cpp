@@ -12,9 +12,27 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
   static constexpr MaterialKind kValues[] = {
       MaterialKind::diffuse, MaterialKind::mirror,     MaterialKind::glass, MaterialKind::conductor,
       MaterialKind::coat,    MaterialKind::subsurface, MaterialKind::volume};
-  json.check_keys({"name", "kind", "reflectance", "reflectance_map", "roughness", "metalness",
-                   "roughness_metalness_map", "ior", "interior", "two_sided", "emission",
-                   "emission_map", "emits_two_sided", "opacity", "opacity_map", "opacity_cutoff"});
+  json.check_keys({"name",
+                   "kind",
+                   "reflectance",
+                   "reflectance_map",
+                   "roughness",
+                   "metalness",
+                   "roughness_metalness_map",
+                   "ior",
+                   "interior",
+                   "two_sided",
+                   "emission",
+                   "emission_map",
+                   "emits_two_sided",
+                   "opacity",
+                   "opacity_map",
+                   "opacity_cutoff",
+                   "multiple_scattering",
+                   "normal_map",
+                   "normal_scale",
+                   "bump_map",
+                   "bump_height"});
   Material material;
   const JsonCursor name = json.at("name");
   material.name = name.text();
@@ -30,6 +48,7 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
   if (const auto c = json.find("reflectance")) material.reflectance = c->rgb(kUnitRange);
   if (const auto r = json.find("roughness")) material.roughness = r->number(kUnitRange);
   if (const auto m = json.find("metalness")) material.metalness = m->number(kUnitRange);
+  if (const auto b = json.find("multiple_scattering")) material.multiple_scattering = b->boolean();
   if (const auto i = json.find("ior")) material.ior = i->number({1, 10, "in [1, 10]"});
   if (material.kind == MaterialKind::subsurface || material.kind == MaterialKind::volume) {
     material.interior = read_medium_name(json, "interior", load.scene);
@@ -54,6 +73,11 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
   material.emission_texture = texture("emission_map", TextureUse::radiance);
   material.roughness_metalness_texture = texture("roughness_metalness_map", TextureUse::numbers);
   material.opacity_texture = texture("opacity_map", TextureUse::opacity);
+  material.normal_texture = texture("normal_map", TextureUse::numbers);
+  if (const auto s = json.find("normal_scale")) material.normal_scale = s->number(kNonNegative);
+  material.bump_texture = texture("bump_map", TextureUse::numbers);
+  if (json.find("bump_map"))
+    material.bump_height = load.scene.space.local_length(json.at("bump_height").real());
   load.scene.materials.push_back(std::move(material));
 }
 

@@ -94,6 +94,8 @@ class MtlReader {
       material().map_kd = read_map();
     } else if (statement == "map_ke") {
       material().map_ke = read_map();
+    } else if (statement == "norm" || statement == "bump" || statement == "map_bump") {
+      read_relief(statement == "norm");
     } else if (statement == "map_d") {
       material().map_d = read_map();
     } else if (std::find(std::begin(kLackedNumbers), std::end(kLackedNumbers), statement) !=
@@ -174,10 +176,16 @@ class MtlReader {
   }
 
   // Options, then the name, which may hold spaces and look like an option.
-  MtlMaterial::Map read_map() {
+  MtlMaterial::Map read_map(bool multiplied = false) {
     (void)material();
+    MtlMaterial::Map map;
     while (lines_.rest().starts_with('-')) {
       const std::string_view option = next();
+      if (multiplied && core::lower(option) == "-bm") {
+        lines_.skip(option.size());
+        map.multiplier = lines_.number(option);
+        continue;
+      }
       const int known = read_option(option);
       if (known < 0) break;
       if (known == 0) left_out_.add(fmt::format("option {} of {}", option, lines_.statement()));
@@ -185,7 +193,18 @@ class MtlReader {
     const std::string_view file = lines_.rest();
     if (file.empty())
       lines_.fail(fmt::format("{} lacks the name of a picture", lines_.statement()));
-    return {std::string(file), lines_.line()};
+    map.file = file;
+    map.line = lines_.line();
+    return map;
+  }
+
+  // A picture of normals counts more than one of heights.
+  void read_relief(bool of_normals) {
+    const MtlMaterial::Map map = read_map(true);
+    MtlMaterial& m = material();
+    if (!m.relief.file.empty() && m.relief.file != map.file)
+      left_out_.add("all but one picture of a material's relief");
+    if (m.relief.file.empty() || of_normals) m.relief = map;
   }
 
   [[nodiscard]] std::string_view next() const {

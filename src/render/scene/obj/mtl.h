@@ -24,8 +24,9 @@ struct MtlMaterial {
   struct Map {
     std::string file;      // empty: no map
     std::size_t line = 0;  // line of the statement
+    float multiplier = 1;  // of a relief: its option -bm
   };
-  Map map_kd, map_ke, map_d;
+  Map map_kd, map_ke, map_d, relief;
 };
 
 // Reads every statement of a library and checks its numbers. Statements without effect are added to

@@ -92,6 +92,8 @@ Material to_material(const MtlMaterial& mtl, const std::string& path, TextureTab
       material.kind == MaterialKind::gloss)
     material.reflectance_texture = load(mtl.map_kd, TextureUse::reflectance);
   material.emission_texture = load(mtl.map_ke, TextureUse::radiance);
+  material.normal_texture = load(mtl.relief, TextureUse::relief);
+  material.normal_scale = mtl.relief.multiplier;
   if (material.kind != MaterialKind::glass)
     material.opacity_texture = load(mtl.map_d, TextureUse::opacity);
   // Nothing glows for want of its picture.
