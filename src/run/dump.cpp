@@ -144,11 +144,11 @@ std::size_t Dump::require(std::string_view channel, std::string_view wanted_by,
                           std::string_view instead) const {
   const std::optional<std::size_t> place = find(channel);
   if (place) return *place;
-  if (rule_ && reader_.head().find(channel)) {
+  if (rule_ && reader_->head().find(channel)) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("{}: the vertices of {} have no channel {}, which {} needs; choose "
                             "first-rough{}",
-                            reader_.path(), to_text(*rule_), channel, wanted_by,
+                            reader_->path(), to_text(*rule_), channel, wanted_by,
                             instead.empty() ? "" : ", or " + std::string(instead)));
   }
   throw Error(ErrorCode::bad_input,
@@ -219,7 +219,7 @@ void Dump::read(const filter::PathRange& range, const ChannelSet& channels,
   };
   filter::for_each_channel(
       [&](const char*, const auto& member) { add_task(member(channels), member(out)); });
-  add_layer_tasks(reader_, range, channels.layers, out, tasks);
+  add_layer_tasks(*reader_, range, channels.layers, out, tasks);
   core::parallel_for(tasks.size(), 1, [&](std::size_t begin, std::size_t) { tasks[begin](); });
   make_finite(out.coverage, out.not_finite_coverage);
   out.layer_views.clear();

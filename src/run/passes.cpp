@@ -18,12 +18,13 @@ std::size_t last_pass(const Dump& dump, const PassSelection& selection) {
   const auto& frames = dump.metadata().frames;
   if (frames && frames->count > 1 &&
       selection.first / frames->passes != (last - 1) / frames->passes) {
-    throw Error(ErrorCode::usage,
-                fmt::format("{}: has the frames {}:{}, {}:{} is of several, which would be mixed; "
-                            "choose one by --frame, or {} passes from 0, {}, ... on by --passes",
-                            dump.reader().path(), frames->first,
-                            frames->first + std::uint64_t{frames->count}, selection.first, last,
-                            frames->passes, frames->passes));
+    throw Error(
+        ErrorCode::usage,
+        fmt::format(
+            "{}: has the frames {}:{}, and passes {}:{} are of several, which would be mixed; "
+            "choose one by --frame, or {} passes from 0, {}, ... on by --passes",
+            dump.reader().path(), frames->first, frames->first + std::uint64_t{frames->count},
+            selection.first, last, frames->passes, frames->passes));
   }
   return last;
 }

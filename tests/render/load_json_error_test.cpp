@@ -117,6 +117,9 @@ TEST_CASE("an error of a medium of the JSON scene names file and JSON path", "[l
         "s.json:1: /materials/0/interior: no medium is called \"waxx\"; did you mean \"wax\"?");
   CHECK(message_of(R"({"media": [{"name": "wax", "sigma_s": 1}], "medium": "wx"})") ==
         "s.json:1: /medium: no medium is called \"wx\"; did you mean \"wax\"?");
+  CHECK(material(R"(, "kind": "volume", "interior": "wax", "opacity": 0.5)") ==
+        "s.json:1: /materials/0/opacity: materials with an interior are never there in part; leave "
+        "it out");
   CHECK(material(R"(, "interior": "wax")") ==
         "s.json:1: /materials/0/interior: only materials of the kinds subsurface and volume "
         "have one");

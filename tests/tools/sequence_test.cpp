@@ -27,8 +27,10 @@ TEST_CASE("psf filter takes one frame of a sequence and refuses to mix them") {
 
   const Outcome mixed = psf::tests::run("psf filter " + all + " -o " + (folder / "mixed.png"));
   CHECK(mixed.code == 2);
-  CHECK(mixed.err.find("has the frames 3:6, 0:6 is of several, which would be mixed; choose one by "
-                       "--frame") != std::string::npos);
+  CHECK(
+      mixed.err.find(
+          "has the frames 3:6, and passes 0:6 are of several, which would be mixed; choose one by "
+          "--frame") != std::string::npos);
   CHECK(psf::tests::run("psf filter " + all + " --passes 1:3 -o " + (folder / "mixed.png")).code ==
         2);
 

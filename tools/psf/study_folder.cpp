@@ -159,7 +159,7 @@ std::optional<std::string> StudyFolder::write_reference() const {
 
 std::string StudyFolder::write(const std::string& name, std::span<const Rgb> picture,
                                const std::optional<filter::Parameters>& parameters) const {
-  const std::string path = file(name);
+  std::string path = file(name);
   write_study_picture(path, width_, height_, picture, parameters, vertex_);
   return path;
 }

@@ -110,9 +110,9 @@ Steps load_steps(const Scene& scene, const std::function<Scene(double frame)>& p
   if (!any_bends(ends[0], middle, ends[1])) return ends;
   Steps all;
   all.push_back(std::move(ends[0]));
-  for (std::size_t k = 1; k + 1 < kSteps; ++k) {
-    all.push_back(k == kMiddle ? std::move(middle) : at(k));
-  }
+  for (std::size_t k = 1; k < kMiddle; ++k) all.push_back(at(k));
+  all.push_back(std::move(middle));
+  for (std::size_t k = kMiddle + 1; k + 1 < kSteps; ++k) all.push_back(at(k));
   all.push_back(std::move(ends[1]));
   return all;
 }

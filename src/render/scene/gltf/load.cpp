@@ -14,7 +14,7 @@ constexpr int kMaxNodeDepth = 512;  // deepest nesting of nodes
 
 Imath::M44d local_matrix(const GltfLoad& load, const JsonCursor& node, std::uint64_t index) {
   if (const auto matrix = node.find("matrix")) {
-    if (load.tracks.count(index) != 0)
+    if (load.tracks.contains(index))
       matrix->fail(
           "a node that an animation moves has no matrix; export it with a translation, "
           "rotation and scale");

@@ -5,6 +5,38 @@
 
 namespace psf::render {
 
+namespace {
+
+void read_pictures(const JsonCursor& json, JsonLoad& load, Material& material) {
+  const auto texture = [&](std::string_view key, TextureUse use) {
+    const auto file = json.find(key);
+    if (!file) return kNone;
+    return load.textures.load(file->file(), file->text(), use, [&] {
+      return file->where() + ": material \"" + material.name + "\"";
+    });
+  };
+  material.reflectance_texture = texture("reflectance_map", TextureUse::reflectance);
+  material.emission_texture = texture("emission_map", TextureUse::radiance);
+  material.roughness_metalness_texture = texture("roughness_metalness_map", TextureUse::numbers);
+  material.opacity_texture = texture("opacity_map", TextureUse::opacity);
+  material.normal_texture = texture("normal_map", TextureUse::numbers);
+  if (const auto s = json.find("normal_scale")) material.normal_scale = s->number(kNonNegative);
+  material.bump_texture = texture("bump_map", TextureUse::numbers);
+  if (json.find("bump_map"))
+    material.bump_height = load.scene.space.local_length(json.at("bump_height").real());
+}
+
+// Light passes the boundary of a medium by its own laws.
+void refuse_opacity(const JsonCursor& json) {
+  for (const char* key : {"opacity", "opacity_map", "opacity_cutoff"}) {
+    if (const auto found = json.find(key)) {
+      found->fail("materials with an interior are never there in part; leave it out");
+    }
+  }
+}
+
+}  // namespace
+
 void read_material(const JsonCursor& json, JsonLoad& load) {
   static constexpr std::string_view kKinds[] = {"diffuse", "mirror",     "glass", "conductor",
                                                 "coat",    "subsurface", "volume"};
@@ -52,6 +84,7 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
   if (const auto i = json.find("ior")) material.ior = i->number({1, 10, "in [1, 10]"});
   if (material.kind == MaterialKind::subsurface || material.kind == MaterialKind::volume) {
     material.interior = read_medium_name(json, "interior", load.scene);
+    refuse_opacity(json);
   } else if (const auto interior = json.find("interior")) {
     interior->fail("only materials of the kinds subsurface and volume have one");
   }
@@ -62,22 +95,7 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
   if (json.find("emission_map")) material.emission = Rgb(1);
   if (const auto e = json.find("emission")) material.emission = e->rgb(kNonNegative);
 
-  const auto texture = [&](std::string_view key, TextureUse use) {
-    const auto file = json.find(key);
-    if (!file) return kNone;
-    return load.textures.load(file->file(), file->text(), use, [&] {
-      return file->where() + ": material \"" + material.name + "\"";
-    });
-  };
-  material.reflectance_texture = texture("reflectance_map", TextureUse::reflectance);
-  material.emission_texture = texture("emission_map", TextureUse::radiance);
-  material.roughness_metalness_texture = texture("roughness_metalness_map", TextureUse::numbers);
-  material.opacity_texture = texture("opacity_map", TextureUse::opacity);
-  material.normal_texture = texture("normal_map", TextureUse::numbers);
-  if (const auto s = json.find("normal_scale")) material.normal_scale = s->number(kNonNegative);
-  material.bump_texture = texture("bump_map", TextureUse::numbers);
-  if (json.find("bump_map"))
-    material.bump_height = load.scene.space.local_length(json.at("bump_height").real());
+  read_pictures(json, load, material);
   load.scene.materials.push_back(std::move(material));
 }
 
