@@ -1,4 +1,6 @@
 // Extensions of glTF that psf reads, and the values of what a file leaves out.
+#include <ImathBox.h>
+
 #include <numbers>
 
 #include "catch.h"
@@ -43,6 +45,38 @@ TEST_CASE("instances stand where their attributes put them, in the node's space"
   const TempFolder folder;
   CHECK(contains(load_failure(folder.write("s.gltf", d.gltf())).message,
                  "/attributes/SCALE: the attributes have different counts"));
+}
+
+TEST_CASE("a file with instances that a scene includes keeps them", "[load][gltf][json]") {
+  // A strip of 16 triangles, 4,096 times.
+  Document d = triangle();
+  std::vector<float> strip, places;
+  for (int k = 0; k < 18; ++k) {
+    for (const int v : {k / 2, k % 2, 0}) strip.push_back(static_cast<float>(v));
+  }
+  for (int k = 0; k < 4096; ++k) {
+    for (const int v : {k % 64 * 10, 0, k / 64 * 10}) places.push_back(static_cast<float>(v));
+  }
+  json& primitive = d.root["meshes"][0]["primitives"][0];
+  primitive = {{"attributes", {{"POSITION", d.accessor(strip, 5126, "VEC3", 3)}}}, {"mode", 5}};
+  d.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {
+      {"TRANSLATION", d.accessor(places, 5126, "VEC3", 3)}};
+  const TempFolder folder;
+  const Scene alone = load_scene(folder.write("m.gltf", d.gltf()));
+  REQUIRE(alone.instances.size() == 4096);
+  const Scene scene = load_scene(folder.write("s.json", R"({"shapes": [{"shape": "mesh",
+      "file": "m.gltf", "transform": {"translate": [0, 5, 0]},
+      "repeat": {"count": 2, "step": {"translate": [0, 0, 1000]}}}]})"));
+  CHECK(scene.meshes.empty());
+  REQUIRE(scene.instances.size() == 8192);
+  Imath::Box3f box;
+  for (const Instance& instance : scene.instances) {
+    for (const Vec3& p : scene.prototypes.at(instance.prototype).positions) {
+      box.extendBy(p * instance.placement);
+    }
+  }
+  check_point(box.min, {0, 5, 0});
+  check_point(box.max, {638, 6, 1630});
 }
 
 TEST_CASE("a hidden node hides its children", "[load][gltf]") {

@@ -245,5 +245,32 @@ TEST_CASE("inline meshes and mesh files arrive, with a material of the scene or 
   CHECK(scene.meshes[2].triangles.size() == 2);
 }
 
+TEST_CASE("materials of a mesh file keep all their pictures among those of the scene",
+          "[load][json]") {
+  const TempFolder folder;
+  folder.write("one.ppm", ppm(1, "255 0 0"));
+  folder.write("two.ppm", ppm(1, "0 255 0"));
+  folder.write("m/tri.obj",
+               "mtllib tri.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+  folder.write("m/tri.mtl",
+               "newmtl m\nmap_Kd ../one.ppm\nmap_d ../two.ppm\nmap_Bump ../two.ppm\n"
+               "norm ../one.ppm\nmap_Ke ../two.ppm\n");
+  const std::string included = R"("shapes": [{"shape": "mesh", "file": "m/tri.obj"}])";
+  const Scene alone = load_scene(folder.write("a.json", "{" + included + "}"));
+  Scene scene = load_scene(folder.write("s.json", R"({"materials": [
+      {"name": "before", "reflectance_map": "one.ppm"}], )" +
+                                                      included + "}"));
+  REQUIRE(alone.materials.size() == 1);
+  REQUIRE(scene.materials.size() == 2);
+  Material own = alone.materials[0];
+  std::size_t pictures = 0;
+  for (std::size_t k = 0; k < own.textures().size(); ++k) {
+    const int before = *own.textures()[k], now = *scene.materials[1].textures()[k];
+    pictures += before != kNone;
+    CHECK(now == (before == kNone ? kNone : before + 1));
+  }
+  CHECK(pictures >= 4);
+}
+
 }  // namespace
 }  // namespace psf::render

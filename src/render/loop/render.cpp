@@ -15,13 +15,11 @@
 #include "core/progress.h"
 #include "core/seconds.h"
 #include "formats/read/reader.h"
-#include "render/camera/camera.h"
 #include "render/loop/photon_table.h"
-#include "render/loop/recorder.h"
 #include "render/loop/resume.h"
 #include "render/loop/shade_rate.h"
+#include "render/loop/slab.h"
 #include "render/loop/vertex_table.h"
-#include "render/sample/sampler_hash.h"
 #include "render/scene/motion.h"
 
 namespace psf::render {
@@ -30,63 +28,9 @@ namespace {
 constexpr std::size_t kSlab = std::size_t{1} << 18;        // records traced before they are written
 constexpr std::size_t kVertexSlab = std::size_t{1} << 16;  // the same with the vertices of paths
 constexpr std::uint64_t kPhotonSlab = std::uint64_t{1} << 16;  // light paths at once
-constexpr std::size_t kGrain = 1024;                           // paths a task
 
 using core::Clock;
 using core::seconds_since;
-
-// A camera's place among the paths of a pass.
-struct View {
-  CameraRays rays;
-  std::uint32_t width, height;
-  std::uint64_t first;  // path of the pass
-  // Whether the time of paths is drawn, and from when to when on, as rays have it.
-  bool blurs;
-  float opens, closes;
-  [[nodiscard]] std::size_t pixels() const { return std::size_t{width} * height; }
-};
-
-// Room for the layers of one path.
-class LayerSpace {
- public:
-  explicit LayerSpace(std::size_t layers)
-      : values_(2 * layers),
-        sums_{std::span(values_).first(layers), std::span(values_).last(layers)} {}
-  [[nodiscard]] const LayerSums& cleared() {
-    std::fill(values_.begin(), values_.end(), Rgb(0, 0, 0));
-    return sums_;
-  }
-
- private:
-  std::vector<Rgb> values_;
-  LayerSums sums_;
-};
-
-// What a slab of paths gives to the file.
-struct Slab {
-  Slab(std::size_t paths, std::span<const LayerInfo> layers,
-       std::span<const formats::Channel> channels)
-      : records(paths, layers, channels), vertices(core::range_count(paths, kGrain)) {}
-  Recorder records;
-  std::vector<std::vector<VertexRow>> vertices;  // of each task
-};
-
-// A position on the film as a float in its pixel: rounding must not take it to the next one.
-float in_pixel(float position, std::uint32_t pixel) {
-  return std::min(position, std::nextafter(static_cast<float>(pixel + 1), 0.0f));
-}
-
-// The sets of light paths of a frame are its own.
-SamplerSettings light_sampler(SamplerSettings settings, std::uint32_t frame) {
-  if (frame > 0) settings.seed = mix(settings.seed + frame * kGolden);
-  return settings;
-}
-
-// Where the scene's shutter is, between 0 and 1, at this time of a camera's.
-float shutter_time(const Scene& scene, float time) {
-  const float length = scene.shutter.close - scene.shutter.open;
-  return std::clamp((time - scene.shutter.open) / length, 0.0f, 1.0f);
-}
 
 class Loop {
  public:

@@ -57,6 +57,13 @@ struct Material {
   bool emits_two_sided = false;
   Rgb emission{0, 0, 0};  // radiance of the front side
   int emission_texture = kNone;
+
+  // All its pictures.
+  [[nodiscard]] std::array<int*, 6> textures() {
+    return {&reflectance_texture, &roughness_metalness_texture,
+            &opacity_texture,     &normal_texture,
+            &bump_texture,        &emission_texture};
+  }
 };
 
 // A mesh at a moment.

@@ -64,6 +64,11 @@ void read_shape(const JsonCursor& json, const std::vector<Placement>& placements
 void add_mesh(const JsonCursor& json, const Mesh& mesh, const std::vector<Placement>& placements,
               JsonLoad& load);
 
+// Adds the surfaces of a mesh file with its materials, or with `material` for all; its lights and
+// cameras stay out.
+void add_mesh_file(const JsonCursor& json, int material, bool flipped,
+                   const std::vector<Placement>& placements, JsonLoad& load);
+
 // Shapes that are grown from a seed, and curves (`hairball`: grown too).
 void add_curves(const JsonCursor& json, bool hairball, const std::string& name, int material,
                 const std::vector<Placement>& placements, JsonLoad& load);

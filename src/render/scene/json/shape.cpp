@@ -129,55 +129,6 @@ void add_sphere(const JsonCursor& json, const Sphere& sphere, const Imath::Vec3<
   }
 }
 
-// The surfaces of a mesh file with its materials, or with `material` for all; its lights and
-// cameras stay out.
-void add_mesh_file(const JsonCursor& json, int material, bool flipped,
-                   const std::vector<Placement>& placements, JsonLoad& load) {
-  const JsonCursor file = json.at("file");
-  Scene& scene = load.scene;
-  Scene part;
-  part.moment = scene.moment;
-  try {
-    const std::string path = find_file(file.file(), file.text());
-    scene.files.push_back(path);
-    if (scene.space.exact) {
-      part = load_fitting(path, [&](Scene& empty) {
-        empty.moment = scene.moment;
-        load_mesh_file(path, empty);
-      });
-    } else {
-      load_mesh_file(path, part);
-      if (fitting_space(part).exact) scene.wanted.exact = true;
-    }
-  } catch (const Error& error) {
-    throw Error(error.code(), file.where() + ": " + error.what());
-  }
-  std::vector<Placement> of_part = placements;
-  if (scene.space.exact) {
-    for (Placement& placement : of_part) placement = part.space.to_world() * placement;
-  }
-  const int first_material = static_cast<int>(scene.materials.size());
-  if (material == kNone) {
-    const int first_texture = static_cast<int>(scene.textures.size());
-    for (Texture& texture : part.textures) scene.textures.push_back(std::move(texture));
-    for (Material m : part.materials) {
-      for (int* texture :
-           {&m.reflectance_texture, &m.emission_texture, &m.roughness_metalness_texture}) {
-        if (*texture != kNone) *texture += first_texture;
-      }
-      scene.materials.push_back(std::move(m));
-    }
-  }
-  for (Mesh& mesh : part.meshes) {
-    mesh.material = material == kNone ? mesh.material + first_material : material;
-    if (flipped) flip(mesh);
-    add_mesh(json, mesh, of_part, load);
-  }
-  scene.files.insert(scene.files.end(), part.files.begin(), part.files.end());
-  scene.animation.insert(scene.animation.end(), part.animation.begin(), part.animation.end());
-  for (std::string& warning : part.warnings) scene.warnings.push_back(std::move(warning));
-}
-
 constexpr std::string_view kShapes[] = {"group", "sphere",       "quad",     "box",    "arch",
                                         "lathe", "mesh",         "cylinder", "curves", "hairball",
                                         "tree",  "noise-sphere", "tuft"};
