@@ -47,6 +47,7 @@ struct EstimatorRun {
 };
 
 inline bool same_bytes(const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
+  if (a.empty() || b.empty()) return a.empty() && b.empty();
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Rgb)) == 0;
 }
 
