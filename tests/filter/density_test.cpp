@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "estimator_case.h"
 #include "filter/many_radii.h"
+#include "keep_averages.h"
 #include "photon_set.h"
 
 namespace psf {
@@ -194,30 +195,10 @@ TEST_CASE("Many radii of density are what separate runs give") {
       radii.push_back({r0, filter::RadiusBasis::distance, delta, {}});
     }
   }
-  class Keep : public filter::Receiver {
-   public:
-    Keep(std::size_t radii, std::size_t count) : c_bar(radii, std::vector<Rgb>(count, Rgb(0))) {}
-    void begin(std::span<const std::uint32_t> queries, std::size_t grain) override {
-      queries_ = queries;
-      grain_ = grain;
-    }
-    void take(std::size_t part, std::size_t first, std::size_t count,
-              std::span<const Rgb> averages) override {
-      for (std::size_t k = 0; k < averages.size(); ++k) {
-        c_bar[first + k % count][queries_[part * grain_ + k / count]] = averages[k];
-      }
-    }
-    void end() override {}
-    std::vector<std::vector<Rgb>> c_bar;
-
-   private:
-    std::span<const std::uint32_t> queries_;
-    std::size_t grain_ = 0;
-  };
   for (const Kind engine : {Kind::flann, Kind::brute}) {
     auto parameters = tests::density_parameters(terms_of_bits(5), 0);
     parameters.engine = engine;
-    Keep keep(radii.size(), set.size());
+    tests::KeepAverages keep(set.size(), radii.size());
     const filter::ManyEstimates many =
         filter::estimate_many(records, block, parameters, radii, keep);
     for (std::size_t k = 0; k < radii.size(); ++k) {

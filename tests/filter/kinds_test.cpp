@@ -11,6 +11,7 @@
 #include "estimator_case.h"
 #include "filter/many_radii.h"
 #include "filter/radius.h"
+#include "keep_averages.h"
 #include "oracle.h"
 
 namespace psf {
@@ -161,35 +162,13 @@ TEST_CASE("An estimator of all vertices is that of surfaces and that of volumes"
 
 TEST_CASE("Many radii at once are those of separate runs, in volumes too") {
   const Mixed mixed(600, 8, 0.2);
-  class Keep : public filter::Receiver {
-   public:
-    explicit Keep(std::size_t records, std::size_t radii)
-        : c_bar(radii, std::vector<Rgb>(records, Rgb(0, 0, 0))) {}
-    void begin(std::span<const std::uint32_t> queries, std::size_t grain) override {
-      queries_ = queries;
-      grain_ = grain;
-    }
-    void take(std::size_t part, std::size_t first, std::size_t count,
-              std::span<const Rgb> values) override {
-      for (std::size_t q = 0; q * count < values.size(); ++q) {
-        const std::uint32_t i = queries_[part * grain_ + q];
-        for (std::size_t k = 0; k < count; ++k) c_bar[first + k][i] = values[q * count + k];
-      }
-    }
-    void end() override {}
-    std::vector<std::vector<Rgb>> c_bar;
-
-   private:
-    std::span<const std::uint32_t> queries_;
-    std::size_t grain_ = 0;
-  };
   for (const Estimator estimator : {Estimator::average, Estimator::disk, Estimator::adaptive}) {
     filter::Parameters p;
     p.estimator = estimator;
     std::vector<filter::Radius> radii;
     for (const double r0 : {0.05, 0.1, 0.2, 0.4}) radii.push_back({r0, filter::RadiusBasis::world});
     const filter::Block block{0, 4, 1.5, kKindsCamera};
-    Keep keep(mixed.kind.size(), radii.size());
+    tests::KeepAverages keep(mixed.kind.size(), radii.size());
     const filter::ManyEstimates many = filter::estimate_many(mixed.view(), block, p, radii, keep);
     for (std::size_t k = 0; k < radii.size(); ++k) {
       std::vector<float> radius;

@@ -1,13 +1,14 @@
 // Many radii in one traversal give what separate runs with plain FLANN give, to the last neighbour.
 #include "filter/many_radii.h"
 
-#include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "catch.h"
 #include "core/parallel.h"
 #include "engine_case.h"
 #include "filter/radius.h"
+#include "keep_averages.h"
 
 namespace psf {
 namespace {
@@ -27,32 +28,10 @@ Result many(const EngineCase& c, const filter::Block& block, const std::vector<R
   filter::Parameters parameters = c.parameters;
   parameters.count_refusals = false;
   Result r;
-  r.c_bar.assign(radii.size(), std::vector<Rgb>(c.set.size(), Rgb(0, 0, 0)));
-  class Keep : public filter::Receiver {
-   public:
-    explicit Keep(Result& to) : to_(to) {}
-    void begin(std::span<const std::uint32_t> queries, std::size_t grain) override {
-      queries_ = queries;
-      grain_ = grain;
-    }
-    void take(std::size_t part, std::size_t first, std::size_t count,
-              std::span<const Rgb> c_bar) override {
-      for (std::size_t q = 0; q * count < c_bar.size(); ++q) {
-        const std::uint32_t i = queries_[part * grain_ + q];
-        for (std::size_t k = 0; k < count; ++k) to_.c_bar[first + k][i] = c_bar[q * count + k];
-      }
-      seen_ += c_bar.size();
-    }
-    void end() override { to_.seen = seen_; }
-
-   private:
-    Result& to_;
-    std::span<const std::uint32_t> queries_;
-    std::size_t grain_ = 0;
-    std::atomic<std::size_t> seen_ = 0;
-  };
-  Keep keep(r);
+  tests::KeepAverages keep(c.set.size(), radii.size());
   r.many = filter::estimate_many(c.set.view(), block, parameters, radii, keep);
+  r.c_bar = std::move(keep.c_bar);
+  r.seen = keep.seen;
   return r;
 }
 

@@ -6,6 +6,7 @@
 #include "estimator_case.h"
 #include "filter/many_radii.h"
 #include "filter/radius.h"
+#include "keep_averages.h"
 #include "oracle.h"
 
 namespace psf {
@@ -102,29 +103,7 @@ TEST_CASE("Neighbours in every unit of length are those of double precision") {
 
 // c_bar of every record for every radius.
 std::vector<std::vector<Rgb>> many(const EngineCase& c, const std::vector<filter::Radius>& radii) {
-  class Keep : public filter::Receiver {
-   public:
-    Keep(std::size_t radii, std::size_t records)
-        : c_bar(radii, std::vector<Rgb>(records, Rgb(0, 0, 0))) {}
-    void begin(std::span<const std::uint32_t> queries, std::size_t grain) override {
-      queries_ = queries;
-      grain_ = grain;
-    }
-    void take(std::size_t part, std::size_t first, std::size_t count,
-              std::span<const Rgb> averages) override {
-      for (std::size_t k = 0; k < averages.size(); ++k) {
-        c_bar[first + k % count][queries_[part * grain_ + k / count]] = averages[k];
-      }
-    }
-    void end() override {}
-
-    std::vector<std::vector<Rgb>> c_bar;
-
-   private:
-    std::span<const std::uint32_t> queries_;
-    std::size_t grain_ = 0;
-  };
-  Keep keep(radii.size(), c.set.size());
+  tests::KeepAverages keep(c.set.size(), radii.size());
   filter::Parameters parameters = c.parameters;
   parameters.count_refusals = false;
   (void)filter::estimate_many(c.set.view(), {0, 1, 1.5, c.cameras}, parameters, radii, keep);

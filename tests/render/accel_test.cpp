@@ -12,11 +12,6 @@ using namespace psf::render::test;
 
 namespace {
 
-Vec3 random_direction(std::mt19937& generator) {
-  std::normal_distribution<float> normal;
-  return Vec3(normal(generator), normal(generator), normal(generator)).normalized();
-}
-
 // A sphere of 8 * 4^levels triangles.
 Mesh tessellated_sphere(float radius, int levels) {
   Mesh mesh;

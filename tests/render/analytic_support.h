@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <numbers>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,11 @@ constexpr SamplerKind kKinds[] = {SamplerKind::sobol, SamplerKind::halton,
 
 inline Rgb grey(float v) {
   return {v, v, v};
+}
+
+inline Vec3 random_direction(std::mt19937& generator) {
+  std::normal_distribution<float> normal;
+  return Vec3(normal(generator), normal(generator), normal(generator)).normalized();
 }
 
 inline int add_material(Scene& scene, MaterialKind kind, float reflectance, float emission = 0) {

@@ -15,11 +15,6 @@ using namespace psf::render::test;
 
 namespace {
 
-Vec3 any_direction(std::mt19937& generator) {
-  std::normal_distribution<float> normal;
-  return Vec3(normal(generator), normal(generator), normal(generator)).normalized();
-}
-
 // A closed body of radius 1 about the origin, with folds.
 Mesh body(bool normals) {
   NoiseSphere sphere;
@@ -75,8 +70,8 @@ TEST_CASE("An instance is met where its mesh would be, placed in double") {
   std::mt19937 generator(1);
   int met = 0, odd = 0;
   for (int k = 0; k < 5000; ++k) {
-    const Vec3 eye = center + any_direction(generator) * 6.0f;
-    const Ray r = ray(eye, center + any_direction(generator) * 0.9f);
+    const Vec3 eye = center + random_direction(generator) * 6.0f;
+    const Ray r = ray(eye, center + random_direction(generator) * 0.9f);
     Hit a, b;
     const bool on_instance = instance_accel.intersect(r.origin, r.direction, a);
     const bool on_mesh = mesh_accel.intersect(r.origin, r.direction, b);
@@ -126,20 +121,20 @@ TEST_CASE("A ray that leaves an instance does not meet it again; one into it mee
   int again = 0, lost = 0, met = 0;
   for (int k = 0; k < 12; ++k) {
     const Imath::M44d placement = scaled(Imath::V3d(double{scale}) * Imath::V3d(stretch, 1, 1)) *
-                                  turned(Imath::V3d(any_direction(generator)), 2) *
-                                  moved(Imath::V3d(any_direction(generator) * (place * scale)));
+                                  turned(Imath::V3d(random_direction(generator)), 2) *
+                                  moved(Imath::V3d(random_direction(generator) * (place * scale)));
     const Scene scene = instance_of(box, placement);
     const Accel accel(scene);
     const Shapes shapes(scene);
     for (int r = 0; r < 500; ++r) {
-      const Vec3 target = Vec3(Imath::V3d(any_direction(generator) * 0.8f) * placement);
-      const Vec3 eye = target + any_direction(generator) * (3 * scale);
+      const Vec3 target = Vec3(Imath::V3d(random_direction(generator) * 0.8f) * placement);
+      const Vec3 eye = target + random_direction(generator) * (3 * scale);
       Hit hit;
       const Vec3 direction = (target - eye).normalized();
       if (!accel.intersect(eye, direction, hit)) continue;
       ++met;
       const Surface s = shapes.surface(hit, direction);
-      Vec3 away = any_direction(generator);
+      Vec3 away = random_direction(generator);
       // Every other ray nearly along the surface.
       if (r % 2 == 0)
         away = (away - s.geometric_normal * (0.999f * dot(away, s.geometric_normal))).normalized();

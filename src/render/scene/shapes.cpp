@@ -189,4 +189,20 @@ void append(Mesh& mesh, const Mesh& part) {
     mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
 }
 
+std::vector<Vec3> smooth_normals(const Mesh& mesh) {
+  std::vector<Imath::V3d> sums(mesh.positions.size(), Imath::V3d(0));
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Imath::V3d o(mesh.positions[a]);
+    const Imath::V3d n =
+        (Imath::V3d(mesh.positions[b]) - o).cross(Imath::V3d(mesh.positions[c]) - o);
+    for (const std::uint32_t i : {a, b, c}) sums[i] += n;
+  }
+  std::vector<Vec3> normals;
+  normals.reserve(sums.size());
+  for (const Imath::V3d& sum : sums) {
+    normals.push_back(sum.length2() > 0 ? Vec3(sum.normalized()) : Vec3(0, 1, 0));
+  }
+  return normals;
+}
+
 }  // namespace psf::render

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/vec.h"
 #include "render/scene/scene.h"
@@ -44,6 +45,9 @@ void transform(Mesh& mesh, const Mat4& m);
 // The same in double; the result is rounded to float once.
 void transform(Mesh& mesh, const Imath::M44d& m);
 void flip(Mesh& mesh);  // front becomes back
+// A unit normal for each vertex: of the triangles around it, by their areas. A vertex of no triangle
+// needs none, and has that up.
+[[nodiscard]] std::vector<Vec3> smooth_normals(const Mesh& mesh);
 // Adds the triangles of `part`; both have normals, or neither; both have uvs, or neither.
 void append(Mesh& mesh, const Mesh& part);
 

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "render/scene/copies.h"
 #include "render/scene/load_parts.h"
+#include "render/scene/shapes.h"
 
 namespace psf::render {
 namespace {
@@ -178,27 +179,10 @@ class Validation {
         n /= length;
         continue;
       }
-      if (around.empty()) around = geometric_normals(mesh);
+      if (around.empty()) around = smooth_normals(mesh);
       n = around[i];
       ++bad_normals_;
     }
-  }
-
-  static std::vector<Vec3> geometric_normals(const Mesh& mesh) {
-    std::vector<Imath::V3d> sums(mesh.positions.size(), Imath::V3d(0));
-    for (const auto& [a, b, c] : mesh.triangles) {
-      const Imath::V3d o(mesh.positions[a]);
-      const Imath::V3d n =
-          (Imath::V3d(mesh.positions[b]) - o).cross(Imath::V3d(mesh.positions[c]) - o);
-      for (const std::uint32_t i : {a, b, c}) sums[i] += n;
-    }
-    std::vector<Vec3> normals;
-    normals.reserve(sums.size());
-    for (const Imath::V3d& sum : sums) {
-      // A vertex of no triangle needs no normal, any unit vector will do.
-      normals.push_back(sum.length2() > 0 ? Vec3(sum.normalized()) : Vec3(0, 1, 0));
-    }
-    return normals;
   }
 
   void check(const Sphere& sphere) const {

@@ -1,6 +1,7 @@
 // The parts of the JSON scene loader. The schema is in sample_data/README.md.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +40,21 @@ void read_material(const JsonCursor& json, JsonLoad& load);
 // those of products, are rounded to float.
 using Placement = Imath::M44d;
 [[nodiscard]] Placement product(const Placement& a, const Placement& b, bool exact);
+
+// How many times larger a transform makes everything; none where that is not the same along all
+// axes. T: float or double.
+template <class T>
+[[nodiscard]] std::optional<T> even_scale(const Imath::Matrix44<T>& m) {
+  // The rows of the linear part: the images of the axes.
+  const Imath::Vec3<T> x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]),
+      z(m[2][0], m[2][1], m[2][2]);
+  const T scale = x.length();
+  const T slack = static_cast<T>(1e-4f) * scale;
+  const bool even = std::abs(y.length() - scale) <= slack &&
+                    std::abs(z.length() - scale) <= slack && std::abs(x.dot(y)) <= slack * scale &&
+                    std::abs(x.dot(z)) <= slack * scale && std::abs(y.dot(z)) <= slack * scale;
+  return even ? std::optional(scale) : std::nullopt;
+}
 
 // Each of `inner` moved by each of `outer`. Throws Error{limit} where they are more than kMaxCopies.
 [[nodiscard]] std::vector<Placement> combine(const JsonCursor& json,

@@ -33,22 +33,11 @@ std::uint64_t read_seed(const JsonCursor& json) {
   return seed ? seed->whole() : 0;
 }
 
-// How many times larger the placement makes everything; an error where it is not the same along all
-// axes.
-double even_scale(const JsonCursor& json, const Placement& m) {
-  const Imath::V3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]),
-      z(m[2][0], m[2][1], m[2][2]);
-  const double scale = x.length(), slack = 1e-4 * scale;
-  const bool even = scale > 0 && std::abs(y.length() - scale) <= slack &&
-                    std::abs(z.length() - scale) <= slack && std::abs(x.dot(y)) <= slack * scale &&
-                    std::abs(x.dot(z)) <= slack * scale && std::abs(y.dot(z)) <= slack * scale;
-  if (!even) json.fail("curves can be moved, turned and scaled evenly only");
-  return scale;
-}
-
-std::vector<Strand> read_strands(const JsonCursor& json) {
+// Counts the pieces, of `copies`, before they are made.
+std::vector<Strand> read_strands(const JsonCursor& json, std::size_t copies, CopyCount& count) {
   const std::uint32_t pieces = integer_or(json, "segments", kMaxPieces, 8);
   std::vector<Strand> strands;
+  std::size_t points_in_all = 0;
   for (const JsonCursor& points : json.at("strands").items()) {
     Strand strand;
     for (const JsonCursor& point : points.items()) {
@@ -59,9 +48,12 @@ std::vector<Strand> read_strands(const JsonCursor& json) {
         point.fail("is the same point as the one before");
     }
     if (strand.size() < 2) points.expected("at least two points");
-    strands.push_back(smooth(strand, pieces));
+    points_in_all += (strand.size() - 1) * pieces + 1;
+    strands.push_back(std::move(strand));
   }
   if (strands.empty()) json.at("strands").expected("at least one strand");
+  count.add(json, points_in_all, 0, copies);
+  for (Strand& strand : strands) strand = smooth(strand, pieces);
   return strands;
 }
 
@@ -86,22 +78,20 @@ void add_curves(const JsonCursor& json, bool hairball, const std::string& name, 
     load.copies.add(json, std::size_t{hair.strands} * hair.segments, 0, placements.size());
     strands = make_hairball(hair);
   } else {
-    strands = read_strands(json);
-    std::size_t points = 0;
-    for (const Strand& strand : strands) points += strand.size();
-    load.copies.add(json, points, 0, placements.size());
+    strands = read_strands(json, placements.size(), load.copies);
   }
   Curves curves;
   curves.name = name;
   curves.material = material;
   for (const Placement& placement : placements) {
-    const double scale = even_scale(json, placement);
+    const std::optional<double> scale = even_scale(placement);
+    if (!scale || !(*scale > 0)) json.fail("curves can be moved, turned and scaled evenly only");
     for (const Strand& strand : strands) {
       for (std::size_t k = 0; k < strand.size(); ++k) {
         if (k + 1 < strand.size())
           curves.segments.push_back(static_cast<std::uint32_t>(curves.points.size()));
         curves.points.push_back(
-            {Vec3(strand[k].position * placement), static_cast<float>(strand[k].radius * scale)});
+            {Vec3(strand[k].position * placement), static_cast<float>(strand[k].radius * *scale)});
       }
     }
   }

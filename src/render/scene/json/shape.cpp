@@ -110,21 +110,13 @@ void add_sphere(const JsonCursor& json, const Sphere& sphere, const Imath::Vec3<
   load.copies.add(json, 1, 0, placements.size());
   for (const Placement& placement : placements) {
     const Imath::Matrix44<T> m(placement);
-    // The rows of the linear part: the images of the axes.
-    const Imath::Vec3<T> x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]),
-        z(m[2][0], m[2][1], m[2][2]);
-    const T scale = x.length();
-    const T slack = static_cast<T>(1e-4f) * scale;
-    const bool even = std::abs(y.length() - scale) <= slack &&
-                      std::abs(z.length() - scale) <= slack &&
-                      std::abs(x.dot(y)) <= slack * scale && std::abs(x.dot(z)) <= slack * scale &&
-                      std::abs(y.dot(z)) <= slack * scale;
-    if (!even)
+    const std::optional<T> scale = even_scale(m);
+    if (!scale)
       json.fail(
           "a sphere can be moved, turned and scaled evenly only; use a lathe for an ellipsoid");
     Sphere copy = sphere;
     copy.center = Vec3(center * m);
-    copy.radius = static_cast<float>(static_cast<T>(sphere.radius) * scale);
+    copy.radius = static_cast<float>(static_cast<T>(sphere.radius) * *scale);
     load.scene.spheres.push_back(std::move(copy));
   }
 }

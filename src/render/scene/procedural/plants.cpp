@@ -1,8 +1,9 @@
-// A tuft of grass, places of many, and normals of what grows.
+// A tuft of grass, and places of many.
 #include <cmath>
 
 #include "render/scene/procedural/procedural.h"
 #include "render/scene/procedural/random.h"
+#include "render/scene/shapes.h"
 
 namespace psf::render {
 
@@ -35,7 +36,7 @@ Mesh make_tuft(const Tuft& tuft) {
       if (k + 1 < kBladePieces) mesh.triangles.push_back({a + 2, a + 1, a + 3});
     }
   }
-  smooth_normals(mesh);
+  mesh.normals = smooth_normals(mesh);
   return mesh;
 }
 
@@ -55,19 +56,6 @@ std::vector<Imath::M44d> scatter(const Scatter& how) {
                         (z - std::floor(z) - 0.5) * how.depth, 1);
   }
   return places;
-}
-
-void smooth_normals(Mesh& mesh) {
-  std::vector<Imath::V3d> sums(mesh.positions.size(), Imath::V3d(0));
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Imath::V3d o(mesh.positions[a]);
-    const Imath::V3d n =
-        (Imath::V3d(mesh.positions[b]) - o).cross(Imath::V3d(mesh.positions[c]) - o);
-    for (const std::uint32_t i : {a, b, c}) sums[i] += n;
-  }
-  mesh.normals.clear();
-  for (const Imath::V3d& sum : sums)
-    mesh.normals.push_back(sum.length2() > 0 ? Vec3(sum.normalized()) : Vec3(0, 1, 0));
 }
 
 }  // namespace psf::render

@@ -74,7 +74,4 @@ struct Scatter {
 };
 [[nodiscard]] std::vector<Imath::M44d> scatter(const Scatter& how);
 
-// The normal of each vertex: the mean of those of the triangles around it, by their areas.
-void smooth_normals(Mesh& mesh);
-
 }  // namespace psf::render

@@ -5,6 +5,7 @@
 
 #include "render/scene/procedural/procedural.h"
 #include "render/scene/procedural/random.h"
+#include "render/scene/shapes.h"
 
 namespace psf::render {
 namespace {
@@ -44,7 +45,7 @@ Mesh make_leaf() {
       if (row + 1 < kRows) leaf.triangles.push_back({a, c, d});
     }
   }
-  smooth_normals(leaf);
+  leaf.normals = smooth_normals(leaf);
   return leaf;
 }
 
@@ -54,7 +55,7 @@ class Growth {
 
   TreeParts run() {
     grow(V3d(0), V3d(0, 1, 0), tree_.height * 0.62, tree_.height * 0.03, 0);
-    smooth_normals(parts_.wood);
+    parts_.wood.normals = smooth_normals(parts_.wood);
     parts_.leaf = make_leaf();
     for (std::uint32_t k = 0; k < tree_.leaves; ++k) add_leaf();
     return std::move(parts_);
