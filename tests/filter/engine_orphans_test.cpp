@@ -1,4 +1,6 @@
 // Orphans of the fast engine adopt what those of the plain one do.
+#include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "catch.h"
@@ -30,6 +32,29 @@ TEST_CASE("Orphans agree among random sources, few of which pass") {
         check_orphans(c);
       }
     }
+  }
+}
+
+// As on surfaces, what is near is alike, so that many nodes of the tree are refused as a whole.
+TEST_CASE("Orphans agree where whole regions are refused") {
+  constexpr std::size_t kCount = 3000;
+  EngineCase c(kCount, 11, 0.8);
+  c.radius.assign(kCount, 0);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const Vec3 x = c.set.position[i];
+    const float turn = std::floor(4 * x.x);
+    c.set.normal[i] = Vec3(std::cos(turn), std::sin(turn), 0);
+    c.set.direction[i] = Vec3(0, std::cos(2 * x.z), std::sin(2 * x.z));
+    c.set.reflectance[i] = Rgb(0.5f * x.y, 0.5f, x.z);
+    c.set.visibility[i] = x.z < 0.3f ? 0x80000000u : x.z < 0.6f ? 0u : 1u;
+    c.set.material[i] = static_cast<std::uint32_t>(std::floor(3 * x.x));
+    // A region without a source.
+    if (x.x + x.y + x.z < 0.8f) c.set.flags[i] = filter::kHasVertex;
+  }
+  for (const unsigned terms : {1u, 2u, 4u, 32u, 64u, 71u, 103u, 255u}) {
+    c.parameters.weights = tests::terms_of(terms);
+    INFO("terms " << terms);
+    CHECK(check_orphans(c) > kCount / 2);
   }
 }
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "filter/engine/refusal.h"
+
 namespace psf::filter::engine {
 namespace {
 
@@ -15,13 +17,13 @@ bool closer(const search::Neighbor& a, const search::Neighbor& b) {
   return a.d_sq != b.d_sq ? a.d_sq < b.d_sq : a.index < b.index;
 }
 
-// The sources nearest to record i that `pass`, at most `count`.
-template <class Pass>
+// The sources nearest to record i that `test` passes, at most `count`.
+template <class Test>
 class Nearest {
  public:
   Nearest(const Tree& tree, const search::BoxIndex& index, std::span<const Vec3> x, std::uint32_t i,
-          std::size_t count, const Pass& pass)
-      : tree_(tree), index_(index), x_(x), at_{x[i], x[i]}, count_(count), pass_(pass) {}
+          std::size_t count, const Test& test)
+      : tree_(tree), index_(index), x_(x), at_{x[i], x[i]}, count_(count), test_(test) {}
 
   // Looks in balls from r_sq on. Sorted; index: the record's number.
   std::vector<search::Neighbor> find(float r_sq) {
@@ -38,10 +40,12 @@ class Nearest {
 
  private:
   void look_into(std::size_t node) {
+    if (test_.refuses(kParents, node)) return;
     const std::size_t end = std::min(tree_.nodes(kGroups), (node + 1) * kWidth);
     for (std::size_t group = node * kWidth; group < end; ++group) {
       const float gap_sq = search::gap_sq(at_, tree_.box(kGroups, group));
       if (!search::chi_ball(gap_sq, r_sq_) || (is_full() && gap_sq > found_.back().d_sq)) continue;
+      if (test_.refuses(kGroups, group)) continue;
       for (std::size_t k = group * kWidth; k < std::min(tree_.size(), (group + 1) * kWidth); ++k) {
         consider(tree_.order()[k]);
       }
@@ -50,7 +54,7 @@ class Nearest {
   void consider(std::uint32_t j) {
     const search::Neighbor candidate{j, search::distance_sq(at_.low, x_[j])};
     if (!search::chi_ball(candidate.d_sq, r_sq_)) return;
-    if ((is_full() && !closer(candidate, found_.back())) || !pass_(j)) return;
+    if ((is_full() && !closer(candidate, found_.back())) || !test_.passes(j)) return;
     if (is_full()) found_.pop_back();
     found_.insert(std::upper_bound(found_.begin(), found_.end(), candidate, closer), candidate);
   }
@@ -61,9 +65,27 @@ class Nearest {
   std::span<const Vec3> x_;
   search::Box at_;
   std::size_t count_;
-  const Pass& pass_;
+  const Test& test_;
   float r_sq_ = 0;
   std::vector<search::Neighbor> found_;
+};
+
+// The weights of record i.
+struct Weighted {
+  const Problem& problem;
+  std::uint32_t i;
+  float r_i;
+  Refusal refusal;
+
+  [[nodiscard]] bool refuses(LevelName level, std::size_t node) const {
+    return refusal.refuses(level, node);
+  }
+  [[nodiscard]] bool passes(std::uint32_t j) const { return problem.weights.pass(i, j, r_i); }
+};
+
+struct Unweighted {
+  [[nodiscard]] static bool refuses(LevelName, std::size_t) { return false; }
+  [[nodiscard]] static bool passes(std::uint32_t) { return true; }
 };
 
 }  // namespace
@@ -71,15 +93,14 @@ class Nearest {
 Adopted adopt(const Tree& tree, const search::BoxIndex& index, const Problem& problem,
               std::uint32_t i, float r_i) {
   const float r_sq = std::max(kLeast, kGrowth * r_i * r_i);
-  const auto pass = [&](std::uint32_t j) { return problem.weights.pass(i, j, r_i); };
   const std::span<const Vec3> x = problem.records.position;
+  const Weighted weighted = {problem, i, r_i, Refusal(tree, problem, i)};
   std::vector<search::Neighbor> nearest =
-      Nearest(tree, index, x, i, kOrphanSources, pass).find(r_sq);
+      Nearest(tree, index, x, i, kOrphanSources, weighted).find(r_sq);
   Adopted adopted;
   if (nearest.empty()) {
     adopted.matched = false;
-    const auto any = [](std::uint32_t) { return true; };
-    nearest = Nearest(tree, index, x, i, 1, any).find(r_sq);
+    nearest = Nearest(tree, index, x, i, 1, Unweighted{}).find(r_sq);
   }
   for (const search::Neighbor& one : nearest) adopted.sources.push_back(one.index);
   return adopted;
