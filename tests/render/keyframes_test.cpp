@@ -92,6 +92,39 @@ TEST_CASE(
   CHECK(hash("", 0) == hash("", 7));
 }
 
+TEST_CASE("A shape that is not there at all moments is an error that says what it is needed for") {
+  Document d = triangle();
+  const int times = d.accessor(std::vector<float>{0, 1}, 5126, "SCALAR", 1);
+  const int scales = d.accessor(std::vector<float>{1, 1, 1, 0, 0, 0}, 5126, "VEC3", 3);
+  d.root["animations"] = {
+      {{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}}},
+       {"samplers", {{{"input", times}, {"output", scales}}}}}};
+  const TempFolder folder;
+  const std::string path = folder.write("s.gltf", d.gltf());
+  SceneOverrides open;
+  open.shutter = Shutter{0, 1};
+  CHECK(load_failure(path, open, {0, 1}).message ==
+        "s.gltf: some of its shapes are not there at frame 1, so they have no motion; scale none "
+        "to nothing, or close the shutter");
+  CHECK(load_failure(path, {}, {1, 1}, true).message ==
+        "s.gltf: some of its shapes are not there at frame 1, so they have no rest positions; "
+        "scale none to nothing, or leave the channel rest_position out");
+}
+
+TEST_CASE("What leaves all bounds while the shutter is open is refused, meshes and spheres") {
+  const TempFolder folder;
+  const std::string far =
+      R"(, "keyframes": [{"frame": 0}, {"frame": 1, "translate": [1e30, 0, 0]}])";
+  const std::string ball = R"(, {"shape": "sphere", "name": "ball", "material": "white",
+      "center": [0, 0, -3], "radius": 1)" +
+                           far + "}";
+  const std::string open = R"(, "shutter": [0, 1])";
+  for (const std::string& text : {moving_scene(far, open), moving_scene("", open, ball)}) {
+    const std::string message = load_failure(folder.write("s.json", text)).message;
+    CHECK(contains(message, "it moves out of all bounds, so it has no motion; close the shutter"));
+  }
+}
+
 TEST_CASE("Errors of keyframes and shutters name the place") {
   const auto failure = [](const std::string& square, const std::string& camera = "") {
     const TempFolder folder;
@@ -152,6 +185,9 @@ TEST_CASE("What glTF animates beside nodes is left out with a note, and bad keys
   CHECK(notes(load(with({{"path", "pointer"}}, {0, 1})), "other things than nodes") == 1);
   CHECK(contains(failure_of(with(node, {1, 1})).message, "grow from key to key"));
   CHECK(contains(failure_of(with(node, {1, 2, 3})).message, "2 values for 3 keys"));
+  CHECK(contains(failure_of(with(node, {})).message, "/samplers/0/input: has no keys"));
+  CHECK(contains(failure_of(with({{"node", 9}, {"path", "scale"}}, {0, 1})).message,
+                 "/animations/0/channels/0/target/node: there is no node 9"));
 }
 
 }  // namespace psf::render

@@ -120,6 +120,11 @@ TEST_CASE("an error of a medium of the JSON scene names file and JSON path", "[l
   CHECK(material(R"(, "kind": "volume", "interior": "wax", "opacity": 0.5)") ==
         "s.json:1: /materials/0/opacity: materials with an interior are never there in part; leave "
         "it out");
+  for (const std::string key : {"emission", "emission_map"}) {
+    CHECK(material(R"(, "kind": "volume", "interior": "wax", ")" + key + R"(": 1)") ==
+          "s.json:1: /materials/0/" + key +
+              ": the surface of a volume is not seen, so it has no light; put a lamp into it");
+  }
   CHECK(material(R"(, "interior": "wax")") ==
         "s.json:1: /materials/0/interior: only materials of the kinds subsurface and volume "
         "have one");

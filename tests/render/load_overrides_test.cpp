@@ -102,6 +102,16 @@ TEST_CASE("cameras that see nothing are refused", "[load][overrides]") {
         "s.json: camera 0 a: looks along its up direction; choose another \"up\"");
 }
 
+TEST_CASE("a lens wider than rays can begin is refused", "[load][overrides]") {
+  const TempFolder folder;
+  const std::string wide = R"({"cameras": [{"eye": [0, 0, 5], "target": [0, 0, 0],
+      "lens_radius": 1e30}], "materials": [{"name": "m"}],
+      "shapes": [{"shape": "sphere", "material": "m", "center": [0, 0, 0], "radius": 1}]})";
+  const Failure refused = load_failure(folder.write("s.json", wide));
+  CHECK(refused.code == ErrorCode::limit);
+  CHECK(refused.message == "s.json: camera 0: the lens is wider than 1e+18 times the scene's size");
+}
+
 TEST_CASE("a scene without camera gets one from which every vertex is in the picture",
           "[load][overrides]") {
   const Scene scene = load_with({}, R"({"materials": [{"name": "m"}], "shapes": [

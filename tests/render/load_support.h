@@ -44,9 +44,10 @@ struct Failure {
 };
 
 // The error of loading `path`; an empty message where it loads.
-inline Failure load_failure(const std::string& path, const SceneOverrides& overrides = {}) {
+inline Failure load_failure(const std::string& path, const SceneOverrides& overrides = {},
+                            const Moment& moment = {}, bool rest = false) {
   try {
-    (void)load_scene(path, overrides);
+    (void)load_scene(path, overrides, moment, rest);
   } catch (const Error& error) {
     std::string message = error.what();
     const std::string folder = std::filesystem::path(path).parent_path().string() + "/";

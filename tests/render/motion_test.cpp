@@ -105,6 +105,41 @@ TEST_CASE("Every vertex lies on its shape where that is at the path's time") {
   CHECK(off_rest < 3e-3);
 }
 
+TEST_CASE(
+    "What eases, or goes there and back, is where its keys say at every time of the shutter") {
+  // The square goes one unit to the right: by 3 t^2 - 2 t^3, or with a triangle wave of two periods.
+  struct Course {
+    std::string keys;
+    double (*place)(double);
+  };
+  const std::vector<Course> courses{
+      {R"({"frame": 0, "easing": "smooth"}, {"frame": 1, "translate": [1, 0, 0]})",
+       [](double t) { return t * t * (3 - 2 * t); }},
+      {R"({"frame": 0}, {"frame": 0.25, "translate": [1, 0, 0]}, {"frame": 0.5},
+          {"frame": 0.75, "translate": [1, 0, 0]}, {"frame": 1})",
+       [](double t) { return 1 - std::abs(1 - 4 * std::fmod(t, 0.5)); }}};
+  for (const Course& course : courses) {
+    CAPTURE(course.keys);
+    const tests::Columns columns = dump_of(
+        moving_scene(R"(, "keyframes": [)" + course.keys + "]", R"(, "shutter": [0, 1])"), 4);
+    const auto position = tests::values<Vec3>(columns, "position");
+    const auto rest = tests::values<Vec3>(columns, "rest_position");
+    const auto time = tests::values<float>(columns, "time");
+    const auto flags = tests::values<std::uint8_t>(columns, "flags");
+    double off = 0;
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < position.size(); ++i) {
+      if ((flags[i] & 1) == 0) continue;
+      const double moved = double{position[i].x} - double{rest[i].x};
+      off = std::max(off, std::abs(moved - course.place(double{time[i]})));
+      ++seen;
+    }
+    CHECK(seen > 300);
+    // Between eight steps a smooth one is off by its second derivative, 6, times 1/8 of 1/8^2.
+    CHECK(off < 0.012);
+  }
+}
+
 TEST_CASE("Lamps that move light the floor as they do on average over the time") {
   // Under the floor's normal: a ball of radiance 5 goes by at height 2; then a square.
   Scene scene;

@@ -321,6 +321,21 @@ TEST_CASE("a file that is too small for a scene is none where its place makes it
         Approx(2).epsilon(1e-6));
 }
 
+TEST_CASE("a cylinder that is alone may be as long as any scene", "[scale]") {
+  const TempFolder folder;
+  for (const double scale : {1e-15, 1.0, 1e15, 1e25, 1e35}) {
+    CAPTURE(scale);
+    const nlohmann::json shape{{"shape", "cylinder"}, {"material", "white"},
+                               {"from", {0, 0, 0}},   {"to", {2 * scale, 0, 0}},
+                               {"radius", scale},     {"segments", 4},
+                               {"caps", false}};
+    const Scene scene = load_scene(folder.write("s.json", with_shapes(shape.dump())));
+    CHECK(area_of(scene.meshes.at(0)) * std::ldexp(1.0, 2 * scene.space.exponent) / scale / scale ==
+          Approx(4 * std::sqrt(2.0) * 2).epsilon(1e-5));
+    for (const Vec3& n : scene.meshes[0].normals) CHECK(n.length() == Approx(1).epsilon(1e-5));
+  }
+}
+
 TEST_CASE("scenes beyond the range of floats and doubles are refused by name", "[scale]") {
   const TempFolder folder;
   const auto refusal = [&](const Move& move) {

@@ -45,18 +45,26 @@ std::string brief(const Json& value) {
   return text.size() <= 60 ? text : "another one";
 }
 
-void check_same(const formats::Writer& writer, const Json& before, const Json& now) {
+// Objects are compared member by member, numbers and texts before what is too long to be told.
+void check_same(const formats::Writer& writer, const Json& before, const Json& now,
+                const std::string& of = "") {
   const auto check = [&](const std::string& key) {
     const Json was = before.value(key, Json()), is = now.value(key, Json());
     if (was == is) return;
     if (key == "materials" && was.is_null()) return;  // a dump from before they had names
+    if (was.is_object() && is.is_object()) check_same(writer, was, is, of + key + " ");
     refuse(writer,
-           fmt::format("it was rendered with {} {}, now it is {}; give the same options and scene, "
-                       "or another name",
-                       key, brief(was), brief(is)));
+           fmt::format("it was rendered with {}{} {}, now it is {}; give the same options and "
+                       "scene, or another name",
+                       of, key, brief(was), brief(is)));
   };
-  for (const auto& item : now.items()) check(item.key());
-  for (const auto& item : before.items()) check(item.key());
+  for (const bool structured : {false, true}) {
+    for (const Json* side : {&now, &before}) {
+      for (const auto& item : side->items()) {
+        if (item.value().is_structured() == structured) check(item.key());
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/error.h"
@@ -15,34 +16,46 @@ constexpr float kStraight = 0x1p-12f;  // deviation from a straight line, of its
 
 using Steps = std::vector<Scene>;
 
-[[noreturn]] void fail_shape(const Scene& scene, const std::string& name, const char* what) {
-  throw Error(ErrorCode::bad_input,
-              fmt::format("{}: shape {}: {}, so it has no motion; close the shutter, or change "
-                          "its keys",
-                          scene.name, name, what));
-}
+// What asks for the same shapes at two moments, and how to do without it.
+struct Purpose {
+  const char *what, *remedy;
+};
+constexpr Purpose kMotion{"motion", "close the shutter"};
+constexpr Purpose kRest{"rest positions", "leave the channel rest_position out"};
 
-void check_same_shapes(const Scene& scene, const Scene& other) {
-  if (other.meshes.size() != scene.meshes.size() || other.spheres.size() != scene.spheres.size()) {
+void check_same_shapes(const Scene& scene, const Scene& other, const Purpose& purpose) {
+  const auto fail_shape = [&](const std::string& name, const char* what) {
     throw Error(ErrorCode::bad_input,
-                fmt::format("{}: some of its shapes are not there at frame {}; scale none to "
-                            "nothing, or close the shutter",
-                            scene.name, other.moment.frame));
+                fmt::format("{}: shape {}: {}, so it has no {}; {}, or change its keys", scene.name,
+                            name, what, purpose.what, purpose.remedy));
+  };
+  constexpr char kOutside[] = "it moves out of all bounds";
+  const auto shapes = [](const Scene& s) { return s.meshes.size() + s.spheres.size(); };
+  if (other.meshes.size() != scene.meshes.size() || other.spheres.size() != scene.spheres.size()) {
+    const Scene& fewer = shapes(other) < shapes(scene) ? other : scene;
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: some of its shapes are not there at frame {}, so they have no {}; "
+                            "scale none to nothing, or {}",
+                            scene.name, fewer.moment.frame, purpose.what, purpose.remedy));
   }
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     const Mesh &a = scene.meshes[m], &b = other.meshes[m];
     if (a.positions.size() != b.positions.size() || a.normals.size() != b.normals.size() ||
         a.triangles != b.triangles) {
-      fail_shape(scene, a.name, "its triangles are others from moment to moment");
+      fail_shape(a.name, "its triangles are others from moment to moment");
     }
     for (const Vec3& p : b.positions) {
-      if (!is_finite(p) || !in_space(p)) fail_shape(scene, a.name, "it moves out of all bounds");
+      if (!is_finite(p) || !in_space(p)) fail_shape(a.name, kOutside);
     }
+  }
+  for (const Sphere& s : other.spheres) {
+    if (!is_finite(s.center) || !in_space(s.center) || !(s.radius <= kFarthest))
+      fail_shape(s.name, kOutside);
   }
 }
 
 // Curves have no motion of their own, and instances none either: what keys move is no instance.
-void check_still(const Scene& a, const Scene& b, const char* remedy) {
+void check_still(const Scene& a, const Scene& b, const Purpose& purpose) {
   const auto same_points = [](const Curves& one, const Curves& other) {
     return one.points == other.points;
   };
@@ -54,40 +67,43 @@ void check_still(const Scene& a, const Scene& b, const char* remedy) {
     return;
   }
   throw Error(ErrorCode::bad_input,
-              fmt::format("{}: curves move, which only meshes and spheres can {}", a.name, remedy));
+              fmt::format("{}: curves move, but only meshes and spheres have {}; {}", a.name,
+                          purpose.what, purpose.remedy));
 }
 
-bool bends(const Vec3& a, const Vec3& middle, const Vec3& b) {
-  return (middle - (a + b) * 0.5f).length() > kStraight * (b - a).length();
+// Whether `there` is off the straight line, on which it would be a `share` of the way from a to b.
+bool bends(const Vec3& a, const Vec3& there, const Vec3& b, float share) {
+  return (there - (a + (b - a) * share)).length() > kStraight * (b - a).length();
 }
-bool bends(const Ball& a, const Ball& middle, const Ball& b) {
-  return bends(a.center, middle.center, b.center) ||
-         std::abs(middle.radius - 0.5f * (a.radius + b.radius)) >
+bool bends(const Ball& a, const Ball& there, const Ball& b, float share) {
+  return bends(a.center, there.center, b.center, share) ||
+         std::abs(there.radius - (a.radius + (b.radius - a.radius) * share)) >
              kStraight * std::abs(b.radius - a.radius);
 }
-bool bends(const CameraPose& a, const CameraPose& middle, const CameraPose& b) {
-  return !(a == b && a == middle);
+bool bends(const CameraPose& a, const CameraPose& there, const CameraPose& b, float) {
+  return !(a == b && a == there);
 }
 
 Ball ball_of(const Sphere& sphere) {
   return {sphere.center, sphere.radius};
 }
 
-// Whether anything leaves the straight line in the middle.
-bool any_bends(const Scene& a, const Scene& middle, const Scene& b) {
+// Whether anything is off the straight line after this share of the time.
+bool any_bends(const Scene& a, const Scene& there, const Scene& b, float share) {
   for (std::size_t m = 0; m < a.meshes.size(); ++m) {
-    const auto &from = a.meshes[m].positions, &over = middle.meshes[m].positions,
+    const auto &from = a.meshes[m].positions, &over = there.meshes[m].positions,
                &to = b.meshes[m].positions;
     for (std::size_t i = 0; i < from.size(); ++i) {
-      if (bends(from[i], over[i], to[i])) return true;
+      if (bends(from[i], over[i], to[i], share)) return true;
     }
   }
   for (std::size_t s = 0; s < a.spheres.size(); ++s) {
-    if (bends(ball_of(a.spheres[s]), ball_of(middle.spheres[s]), ball_of(b.spheres[s])))
+    if (bends(ball_of(a.spheres[s]), ball_of(there.spheres[s]), ball_of(b.spheres[s]), share))
       return true;
   }
   for (std::size_t c = 0; c < a.cameras.size(); ++c) {
-    if (bends(a.cameras[c].pose(), middle.cameras[c].pose(), b.cameras[c].pose())) return true;
+    if (bends(a.cameras[c].pose(), there.cameras[c].pose(), b.cameras[c].pose(), share))
+      return true;
   }
   return false;
 }
@@ -98,23 +114,26 @@ Steps load_steps(const Scene& scene, const std::function<Scene(double frame)>& p
     const double share = static_cast<double>(k) / (kSteps - 1);
     const double open{scene.shutter.open}, close{scene.shutter.close};
     Scene step = places_at(scene.moment.frame + open + share * (close - open));
-    check_same_shapes(scene, step);
-    check_still(scene, step, "while the shutter is open; close it");
+    check_same_shapes(scene, step, kMotion);
+    check_still(scene, step, kMotion);
     return step;
   };
-  constexpr std::size_t kMiddle = (kSteps - 1) / 2;
-  Steps ends;
-  ends.push_back(at(0));
-  ends.push_back(at(kSteps - 1));
-  Scene middle = at(kMiddle);
-  if (!any_bends(ends[0], middle, ends[1])) return ends;
-  Steps all;
-  all.push_back(std::move(ends[0]));
-  for (std::size_t k = 1; k < kMiddle; ++k) all.push_back(at(k));
-  all.push_back(std::move(middle));
-  for (std::size_t k = kMiddle + 1; k + 1 < kSteps; ++k) all.push_back(at(k));
-  all.push_back(std::move(ends[1]));
-  return all;
+  // What eases from key to key, or goes there and back, is on the line in the middle, not before.
+  constexpr std::size_t kLast = kSteps - 1;
+  constexpr std::array kLooks{kLast / 4, kLast / 2};
+  Steps steps(kSteps);
+  steps.front() = at(0);
+  steps.back() = at(kLast);
+  for (const std::size_t k : kLooks) steps[k] = at(k);
+  const bool straight = std::ranges::none_of(kLooks, [&](std::size_t k) {
+    const float share = static_cast<float>(k) / kLast;
+    return any_bends(steps.front(), steps[k], steps.back(), share);
+  });
+  for (std::size_t k = 1; k < kLast && !straight; ++k) {
+    if (std::ranges::find(kLooks, k) == kLooks.end()) steps[k] = at(k);
+  }
+  if (straight) steps.erase(steps.begin() + 1, steps.end() - 1);
+  return steps;
 }
 
 void move_shapes(Steps& steps, Scene& scene) {
@@ -173,8 +192,8 @@ void move_cameras(const SceneOverrides& overrides, const Motion& motion, Scene& 
 }
 
 void keep_rest(Scene& scene, const Scene& at_rest) {
-  if (&scene != &at_rest) check_same_shapes(scene, at_rest);
-  check_still(scene, at_rest, "where their rest positions are kept; leave that channel out");
+  if (&scene != &at_rest) check_same_shapes(scene, at_rest, kRest);
+  check_still(scene, at_rest, kRest);
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     Mesh& mesh = scene.meshes[m];
     const std::vector<Vec3>& rest = at_rest.meshes[m].positions;

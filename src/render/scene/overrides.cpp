@@ -103,6 +103,10 @@ void check_camera(const Camera& camera, std::size_t index, const std::string& fi
   }
   if (!(camera.lens_radius >= 0) || !(camera.focus_distance > 0))
     fail("the lens radius or the focus is negative");
+  if (camera.lens_radius > kFarthest) {
+    fail(fmt::format("the lens is wider than {:.0e} times the scene's size", kFarthest),
+         ErrorCode::limit);
+  }
 }
 
 bool has_light(const Scene& scene) {

@@ -32,6 +32,18 @@ float angle_of(std::uint32_t k, std::uint32_t segments) {
   return 2 * std::numbers::pi_v<float> * static_cast<float>(k) / static_cast<float>(segments);
 }
 
+// Also where squares of it are no floats; such a scene is loaded again in a unit of its own.
+template <class V>
+float length_of(const V& v) {
+  const float narrow = v.length();
+  if (std::isfinite(narrow)) return narrow;
+  double sum = 0;
+  for (int axis = 0; axis < static_cast<int>(V::dimensions()); ++axis) {
+    sum += double{v[axis]} * double{v[axis]};
+  }
+  return static_cast<float>(std::sqrt(sum));
+}
+
 }  // namespace
 
 Mesh make_quad(const Vec3& origin, const Vec3& u, const Vec3& v) {
@@ -59,12 +71,12 @@ Mesh make_box(const Vec3& min, const Vec3& max) {
 Mesh make_lathe(std::span<const Vec2> profile, std::uint32_t segments) {
   Mesh mesh;
   float length = 0;
-  for (std::size_t i = 1; i < profile.size(); ++i) length += (profile[i] - profile[i - 1]).length();
+  for (std::size_t i = 1; i < profile.size(); ++i) length += length_of(profile[i] - profile[i - 1]);
   float done = 0;
   for (std::size_t i = 1; i < profile.size(); ++i) {
     const Vec2 &low = profile[i - 1], &high = profile[i];
     const Vec2 along = high - low;
-    const float step = along.length();
+    const float step = length_of(along);
     if (step == 0) continue;
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     for (std::uint32_t k = 0; k <= segments; ++k) {
@@ -92,7 +104,7 @@ Mesh make_lathe(std::span<const Vec2> profile, std::uint32_t segments) {
 Mesh make_cylinder(const Vec3& from, const Vec3& to, float from_radius, float to_radius,
                    std::uint32_t segments, bool caps) {
   const Vec3 axis = to - from;
-  const float height = axis.length();
+  const float height = length_of(axis);
   std::vector<Vec2> profile;
   if (caps && from_radius > 0) profile.emplace_back(0.0f, 0.0f);
   profile.emplace_back(from_radius, 0.0f);
@@ -135,7 +147,7 @@ Mesh make_arch(const Arch& arch) {
     add_face(mesh, {Vec3(q.x, q.y, -z), Vec3(p.x, p.y, -z), Vec3(p.x, top, -z), Vec3(q.x, top, -z)},
              {q, p, Vec2(p.x, top), Vec2(q.x, top)});
     strip({p.x, p.y, -z}, {q.x, q.y, -z}, {q.x, q.y, z}, {p.x, p.y, z},
-          {(q - p).length(), arch.depth});
+          {length_of(q - p), arch.depth});
   }
   const float h = arch.height;
   strip({-half, h, z}, {half, h, z}, {half, h, -z}, {-half, h, -z}, {arch.width, arch.depth});

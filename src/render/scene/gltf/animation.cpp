@@ -25,9 +25,10 @@ GltfTrack read_track(GltfLoad& load, const JsonCursor& sampler, std::size_t comp
     }
     track.times.push_back(double{time});
   }
+  if (track.times.empty()) input.fail("has no keys");
   track.values = read_floats(load, output, components);
   const std::size_t values = track.kind == GltfTrack::Kind::cubic ? 3 : 1;
-  if (track.times.empty() || track.values.size() != track.times.size() * values * components) {
+  if (track.values.size() != track.times.size() * values * components) {
     output.fail(fmt::format("{} values for {} keys, {} are needed",
                             track.values.size() / components, track.times.size(),
                             track.times.size() * values));
@@ -57,8 +58,11 @@ void read_channel(GltfLoad& load, const JsonCursor& animation, const JsonCursor&
   const JsonCursor samplers = animation.at("samplers"), index = channel.at("sampler");
   const std::uint64_t number = index.whole();
   if (number >= samplers.size()) index.fail(fmt::format("there is no sampler {}", number));
+  const std::uint64_t moved = node->whole();
+  const auto nodes = load.root().find("nodes");
+  if (moved >= (nodes ? nodes->size() : 0)) node->fail(fmt::format("there is no node {}", moved));
   const auto which = static_cast<std::size_t>(known - std::begin(kPaths));
-  std::optional<GltfTrack>& track = load.tracks[node->whole()][which];
+  std::optional<GltfTrack>& track = load.tracks[moved][which];
   if (track) {
     return load.leave_out("animations are left out where another one moves the same node",
                           channel.path());

@@ -35,6 +35,15 @@ void refuse_opacity(const JsonCursor& json) {
   }
 }
 
+// Its surface is never met, so that only light sampling would find it.
+void refuse_emission(const JsonCursor& json) {
+  for (const char* key : {"emission", "emission_map"}) {
+    if (const auto found = json.find(key)) {
+      found->fail("the surface of a volume is not seen, so it has no light; put a lamp into it");
+    }
+  }
+}
+
 }  // namespace
 
 void read_material(const JsonCursor& json, JsonLoad& load) {
@@ -85,6 +94,7 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
   if (material.kind == MaterialKind::subsurface || material.kind == MaterialKind::volume) {
     material.interior = read_medium_name(json, "interior", load.scene);
     refuse_opacity(json);
+    if (material.kind == MaterialKind::volume) refuse_emission(json);
   } else if (const auto interior = json.find("interior")) {
     interior->fail("only materials of the kinds subsurface and volume have one");
   }
