@@ -64,7 +64,8 @@ class Validation {
   void warn(const std::string& what) { scene_.warnings.push_back(path_ + ": " + what); }
 
   void check(const Medium& medium) const {
-    const Rgb coefficients = medium.sigma_t();
+    const float density = medium.density != nullptr ? std::max(1.0f, medium.density->most()) : 1;
+    const Rgb coefficients = medium.sigma_t() * density;
     const bool fits = coefficients.x >= 0 && coefficients.y >= 0 && coefficients.z >= 0 &&
                       std::isfinite(max_component(coefficients));
     if (!fits) {
