@@ -15,16 +15,14 @@ namespace psf::render {
 // from the ray's origin too they are in the cell that the walk has come to.
 class DensityWalk {
  public:
-  DensityWalk(const DensityGrid& grid, const Ray& ray, float reach) : grid_(grid) {
-    const Imath::V3d origin = Imath::V3d(ray.origin) * grid.to_cells();
+  DensityWalk(const DensityGrid& grid, const Ray& ray, float reach)
+      : grid_(grid), origin_(Imath::V3d(ray.origin) * grid.to_cells()), end_(double{reach}) {
     grid.to_cells().multDirMatrix(Imath::V3d(ray.direction), direction_);
-    origin_ = origin;
-    end_ = double{reach};
     for (int axis = 0; axis < 3; ++axis) clip(axis);
     if (!(to_ < end_)) return;
     for (int axis = 0; axis < 3; ++axis) {
-      const double at = origin_[axis] + to_ * direction_[axis];
-      cell_[axis] = std::clamp(static_cast<int>(std::floor(at)), 0, grid.size()[axis] - 1);
+      const double at = std::floor(origin_[axis] + to_ * direction_[axis]);
+      cell_[axis] = static_cast<int>(std::max(0.0, std::min(at, grid.size()[axis] - 1.0)));
       set_exit(axis);
     }
     more_ = true;
@@ -80,10 +78,10 @@ class DensityWalk {
   }
 
   const DensityGrid& grid_;
-  Imath::V3d origin_, direction_;
+  Imath::V3d origin_, direction_{0, 0, 0};
   Imath::V3i cell_{0, 0, 0};
   std::array<double, 3> exit_{};
-  double from_ = 0, to_ = 0, end_ = 0;
+  double from_ = 0, to_ = 0, end_;
   const DensityGrid::Cell* here_ = nullptr;
   bool more_ = false, standing_ = false;
 };

@@ -1,11 +1,12 @@
 // How dense a medium is from place to place: values on a lattice, in cells that know their largest.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <functional>
 #include <memory>
-#include <span>
+#include <string>
 #include <vector>
 
 #include "core/vec.h"
@@ -70,7 +71,8 @@ inline float DensityGrid::density(const Cell& cell, const Vec3& within) {
     first[axis] = std::min(static_cast<int>(at), kCell - 1);
     share[axis] = at - static_cast<float>(first[axis]);
   }
-  const float* v = cell.values->data() + first[0] + kSide * (first[1] + kSide * first[2]);
+  const int at = first[0] + kSide * (first[1] + kSide * first[2]);
+  const float* v = cell.values->data() + at;
   const auto mix = [](float a, float b, float t) { return a + (b - a) * t; };
   constexpr int kY = kSide, kZ = kSide * kSide;
   const float low = mix(mix(v[0], v[1], share[0]), mix(v[kY], v[kY + 1], share[0]), share[1]);

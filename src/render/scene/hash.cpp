@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "render/scene/density_grid.h"
 #include "render/scene/load_parts.h"
 #include "render/scene/motion.h"
 

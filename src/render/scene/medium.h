@@ -5,9 +5,10 @@
 #include <string>
 
 #include "core/vec.h"
-#include "render/scene/density_grid.h"
 
 namespace psf::render {
+
+class DensityGrid;
 
 // Coefficients are per unit of length of the scene's space, by colour.
 struct Medium {

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "render/scene/copies.h"
+#include "render/scene/density_grid.h"
 #include "render/scene/load_parts.h"
 #include "render/scene/shapes.h"
 
