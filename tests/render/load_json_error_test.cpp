@@ -105,6 +105,23 @@ TEST_CASE("an error of a medium of the JSON scene names file and JSON path", "[l
         "one of both pairs is enough");
   CHECK(medium(R"(, "sigma_s": 1, "g": 1)") ==
         "s.json:1: /media/0/g: expected a number in [-0.99, 0.99], got 1");
+  const auto density = [&](const std::string& keys) {
+    return medium(R"(, "sigma_s": 1, "density": {)" + keys + "}");
+  };
+  CHECK(density("") == "s.json:1: /media/0/density: the key \"kind\" is missing");
+  CHECK(density(R"("kind": "clod")") ==
+        "s.json:1: /media/0/density/kind: expected one of cloud, mist, grid, got \"clod\"");
+  CHECK(density(R"("kind": "cloud", "min": [0, 0, 0])").substr(0, 42) ==
+        "s.json:1: /media/0/density: unknown key \"m");
+  CHECK(density(R"("kind": "cloud", "voxels": 0)") ==
+        "s.json:1: /media/0/density/voxels: expected a whole number from 1 to 1024, got 0");
+  CHECK(density(R"("kind": "cloud", "repeat": {"count": 2, "step": {"scale": 1}})") ==
+        "s.json:1: /media/0/density/repeat: a density stands still, and alone");
+  CHECK(density(R"("kind": "mist", "min": [0, 0, 0], "max": [1, 0, 1])") ==
+        "s.json:1: /media/0/density/max: is not greater than \"min\" along each axis");
+  const std::string flat = "[1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]";
+  CHECK(density(R"("kind": "cloud", "transform": {"matrix": )" + flat + "}") ==
+        "s.json:1: /media/0/density/transform: makes everything flat");
   CHECK(message_of(R"({"media": [{"name": "a", "sigma_s": 1}, {"name": "a", "sigma_s": 1}]})") ==
         "s.json:1: /media/1/name: another medium is called \"a\"");
   const auto material = [](const std::string& keys) {

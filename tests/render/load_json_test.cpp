@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "catch.h"
+#include "density_support.h"
 #include "load_support.h"
 
 namespace psf::render {
@@ -134,6 +135,36 @@ TEST_CASE("every key of a medium arrives, in the unit of the scene's space", "[l
   const Scene huge = load("1e9");
   CHECK(huge.space.exponent > 0);
   CHECK(huge.media[1].sigma_s.x == std::ldexp(4.0f, huge.space.exponent));
+}
+
+TEST_CASE("the density of a medium stands where its transform puts it, at any scale",
+          "[load][json]") {
+  const TempFolder folder;
+  // Mist that thins out along y, from 4 to 6; the second scene is a billion times larger.
+  for (const std::string scale : {"1", "1e9"}) {
+    const Scene scene = load_scene(folder.write("s.json", R"({
+      "media": [{"name": "mist", "albedo": 1, "mean_free_path": )" +
+                                                              scale + R"(,
+        "density": {"kind": "mist", "min": [-1, 0, -1], "max": [1, 1, 1], "voxels": 16,
+          "transform": [{"scale": [1, 2, 3]}, {"translate": [0, 4, 0]}, {"scale": )" +
+                                                              scale +
+                                                              R"(}]}}],
+      "medium": "mist", "materials": [{"name": "grey"}],
+      "shapes": [{"shape": "sphere", "material": "grey", "center": [0, 0, 0], "radius": )" +
+                                                              scale + "}]}"));
+    const double unit = scale == "1" ? 1 : 1e9;
+    CHECK((scene.space.exponent > 0) == (unit > 1));
+    CHECK(std::abs(scene.media[0].sigma_s.x * scene.space.local_length(unit) - 1) < 1e-5f);
+    const auto at = [&](double x, double y, double z) {
+      return test::density_at(*scene.media[0].density,
+                              Imath::V3d(scene.space.local(Imath::V3d(x, y, z) * unit)));
+    };
+    CHECK(std::abs(at(0.3, 4.5, 2.9) - 0.75) < 1e-5);
+    CHECK(std::abs(at(-0.9, 5.8, -2.9) - 0.1) < 1e-5);
+    CHECK(at(0.3, 3.9, 0) == 0);
+    CHECK(at(0.3, 4.5, 3.1) == 0);
+    CHECK(at(1.1, 4.5, 0) == 0);
+  }
 }
 
 TEST_CASE("transforms apply in order", "[load][json]") {

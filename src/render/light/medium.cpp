@@ -1,14 +1,10 @@
-// Media that are the same everywhere: free paths, transmittance, scattering.
+// Media that are the same everywhere: free paths and transmittance. Scattering in all media.
 #include "render/light/medium.h"
+
+#include "render/light/medium_channels.h"
 
 namespace psf::render {
 namespace {
-
-// The probability of each channel.
-Rgb channel_choice(const Rgb& carried) {
-  const float sum = carried.x + carried.y + carried.z;
-  return sum > 1e-30f && std::isfinite(sum) ? carried * (1 / sum) : Rgb(1.0f / 3);
-}
 
 Rgb left_after(const Rgb& sigma, float distance) {
   // 0 * infinity is no number, where a channel does not interact.
@@ -22,15 +18,15 @@ float sum_of(const Rgb& c) {
 
 }  // namespace
 
-float sample_distance(const Medium& medium, const Ray&, const Rgb& carried, Sampler& sampler) {
+float sample_distance(const Medium& medium, const Rgb& carried, Sampler& sampler) {
   const Rgb choice = channel_choice(carried), sigma = medium.sigma_t();
   const Vec2 u = sampler.next_2d();
-  const int channel = u.x < choice.x ? 0 : u.x < choice.x + choice.y ? 1 : 2;
+  const int channel = channel_of(choice, u.x);
   return sigma[channel] > 0 ? -std::log1p(-u.y) / sigma[channel]
                             : std::numeric_limits<float>::infinity();
 }
 
-Rgb flight_weight(const Medium& medium, const Ray&, const Rgb& carried, const Flight& flight) {
+Rgb flight_weight(const Medium& medium, const Rgb& carried, const Flight& flight) {
   const Rgb sigma = medium.sigma_t(), left = left_after(sigma, flight.distance);
   const Rgb choice = channel_choice(carried);
   const float density = sum_of(flight.scattered ? choice * sigma * left : choice * left);
@@ -39,7 +35,8 @@ Rgb flight_weight(const Medium& medium, const Ray&, const Rgb& carried, const Fl
   return (flight.scattered ? sigma * left : left) * (1 / density);
 }
 
-Rgb transmittance(const Medium& medium, const Ray&, float distance, Sampler&) {
+Rgb transmittance(const Medium& medium, const Ray& ray, float distance, Sampler& sampler) {
+  if (medium.density != nullptr) return tracked_transmittance(medium, ray, distance, sampler);
   return left_after(medium.sigma_t(), distance);
 }
 

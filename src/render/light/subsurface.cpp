@@ -48,14 +48,16 @@ std::optional<Vertex> Transport::next_inside(Walk& walk, Sampler& sampler,
     return std::optional(v);
   };
   for (;;) {
-    const float sampled = sample_distance(medium, walk.ray, walk.within, sampler);
-    ++rays;
     Hit hit;
-    const bool met =
-        accel_.intersect(walk.ray.origin, walk.ray.direction, hit, sampled, walk.ray.time);
-    const Flight flight{!met, met ? hit.distance : sampled};
-    Rgb weight = flight_weight(medium, walk.ray, walk.within, flight);
-    if (flight.scattered) weight = weight * albedo;
+    Rgb weight;
+    const Flight flight = fly(medium, walk.ray, walk.within, sampler, weight, [&](float reach) {
+      ++rays;
+      const bool there =
+          accel_.intersect(walk.ray.origin, walk.ray.direction, hit, reach, walk.ray.time);
+      return there ? hit.distance : std::numeric_limits<float>::infinity();
+    });
+    const bool met = !flight.scattered && flight.distance < std::numeric_limits<float>::infinity();
+    if (!met) weight = flight.scattered ? weight * albedo : Rgb(0, 0, 0);
     walk.within = walk.within * weight;
     walk.throughput = walk.throughput * weight;
     if (walk.trail != nullptr) walk.trail->attenuate(weight);

@@ -31,24 +31,30 @@ float Transport::arrive(Walk& walk, Surface& surface, Sampler& sampler, std::uin
   float before = 0;
   for (;;) {
     const int medium = walk.media.now();
-    const Medium* in = medium != kNone ? &scene_.media[static_cast<std::size_t>(medium)] : nullptr;
-    const float sampled =
-        in != nullptr ? sample_distance(*in, walk.ray, walk.throughput, sampler) : kUnbounded;
     Hit hit;
-    const bool met = caster_.nearest(walk.ray.origin, walk.ray.direction, sampled, walk.ray.time,
-                                     sampler, hit, rays);
-    const Flight flight{!met && sampled < kUnbounded, met ? hit.distance : sampled};
-    if (in != nullptr) {
-      walk.throughput = walk.throughput * flight_weight(*in, walk.ray, walk.throughput, flight);
+    const auto nearest = [&](float reach) {
+      return caster_.nearest(walk.ray.origin, walk.ray.direction, reach, walk.ray.time, sampler,
+                             hit, rays)
+                 ? hit.distance
+                 : kUnbounded;
+    };
+    Flight flight{false, kUnbounded};
+    if (medium == kNone) {
+      flight.distance = nearest(kUnbounded);
+    } else {
+      Rgb weight;
+      flight = fly(scene_.media[static_cast<std::size_t>(medium)], walk.ray, walk.throughput,
+                   sampler, weight, nearest);
+      walk.throughput = walk.throughput * weight;
     }
     if (flight.scattered) {
       Ray there = walk.ray;
-      there.origin += there.direction * sampled;
+      there.origin += there.direction * flight.distance;
       surface =
           Surface::in_medium(there, medium, static_cast<int>(scene_.materials.size()) + medium);
-      return before + sampled;
+      return before + flight.distance;
     }
-    if (!met) return kUnbounded;
+    if (!(flight.distance < kUnbounded)) return kUnbounded;
     surface = shapes_.surface(hit, walk.ray.direction, walk.ray.time);
     before += hit.distance;
     if (!crosses(surface, walk.media)) return before;

@@ -4,8 +4,10 @@
 
 #include <bit>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "render/scene/density_grid.h"
 #include "render/scene/load_parts.h"
 #include "render/scene/motion.h"
 
@@ -28,10 +30,12 @@ class Digest {
   template <typename T>
   void add_array(const std::vector<T>& values) {
     add(std::uint64_t{values.size()});
-    if (values.empty()) return;
+    if (!values.empty()) add_values(std::span<const T>(values));
+  }
+  template <typename T, std::size_t N>
+  void add_values(std::span<T, N> values) {
     add(std::uint64_t{OIIO::farmhash::Fingerprint64(
-        static_cast<const char*>(static_cast<const void*>(values.data())),
-        values.size() * sizeof(T))});
+        static_cast<const char*>(static_cast<const void*>(values.data())), values.size_bytes())});
   }
   [[nodiscard]] std::string text() const {
     const auto hash = OIIO::farmhash::Fingerprint128(
@@ -89,10 +93,26 @@ void add(Digest& digest, const Material& m) {
   }
 }
 
+void add(Digest& digest, const DensityGrid& grid) {
+  for (int axis = 0; axis < 3; ++axis) digest.add(grid.size()[axis]);
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column)
+      digest.add(std::bit_cast<std::uint64_t>(grid.to_cells()[row][column]));
+  }
+  for (std::size_t c = 0; c < grid.cells().size(); ++c) {
+    const DensityGrid::Cell& cell = grid.cells()[c];
+    if (!(cell.most > 0)) continue;
+    digest.add(std::uint64_t{c});
+    digest.add(cell.most);
+    if (cell.values != nullptr) digest.add_values(std::span(*cell.values));
+  }
+}
+
 void add(Digest& digest, const Medium& medium) {
   digest.add(medium.sigma_a);
   digest.add(medium.sigma_s);
   digest.add(medium.g);
+  if (medium.density != nullptr) add(digest, *medium.density);
 }
 
 void add(Digest& digest, const Mesh& mesh) {

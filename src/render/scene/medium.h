@@ -1,13 +1,16 @@
 // A medium that absorbs and scatters light between surfaces, as a scene describes it.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "core/vec.h"
 
 namespace psf::render {
 
-// The same everywhere. Coefficients are per unit of length of the scene's space, by colour.
+class DensityGrid;
+
+// Coefficients are per unit of length of the scene's space, by colour.
 struct Medium {
   std::string name;
   Rgb sigma_a{0, 0, 0};  // absorption
@@ -15,6 +18,9 @@ struct Medium {
   // Mean cosine of Henyey and Greenstein's phase function (1941), -1 < g < 1: above 0 light is
   // scattered forward.
   float g = 0;
+  // Multiplies both coefficients from place to place; null: the medium is the same everywhere. It
+  // stands still, whatever moves around it.
+  std::shared_ptr<const DensityGrid> density;
 
   // What is scattered of the light that meets something.
   [[nodiscard]] Rgb albedo() const {

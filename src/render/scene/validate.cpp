@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "render/scene/copies.h"
+#include "render/scene/density_grid.h"
 #include "render/scene/load_parts.h"
 #include "render/scene/shapes.h"
 
@@ -64,7 +65,8 @@ class Validation {
   void warn(const std::string& what) { scene_.warnings.push_back(path_ + ": " + what); }
 
   void check(const Medium& medium) const {
-    const Rgb coefficients = medium.sigma_t();
+    const float density = medium.density != nullptr ? std::max(1.0f, medium.density->most()) : 1;
+    const Rgb coefficients = medium.sigma_t() * density;
     const bool fits = coefficients.x >= 0 && coefficients.y >= 0 && coefficients.z >= 0 &&
                       std::isfinite(max_component(coefficients));
     if (!fits) {

@@ -44,7 +44,7 @@ void read_coefficients(const JsonCursor& json, Medium& medium) {
 }  // namespace
 
 void read_medium(const JsonCursor& json, Scene& scene) {
-  json.check_keys({"name", "albedo", "mean_free_path", "sigma_a", "sigma_s", "g"});
+  json.check_keys({"name", "albedo", "mean_free_path", "sigma_a", "sigma_s", "g", "density"});
   Medium medium;
   const JsonCursor name = json.at("name");
   medium.name = name.text();
@@ -55,6 +55,7 @@ void read_medium(const JsonCursor& json, Scene& scene) {
   medium.sigma_a = in_space_of(scene, medium.sigma_a);
   medium.sigma_s = in_space_of(scene, medium.sigma_s);
   if (const auto g = json.find("g")) medium.g = g->number(kMeanCosine);
+  if (const auto density = json.find("density")) medium.density = read_density(*density, scene);
   scene.media.push_back(std::move(medium));
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,15 @@ struct JsonLoad {
   explicit JsonLoad(Scene& target) : scene(target), textures(target) {}
 };
 
+// Values that may be missing; the integers are from 1 to `most`. The seed is 0 where it is missing.
+[[nodiscard]] std::uint32_t integer_or(const JsonCursor& json, std::string_view key,
+                                       std::uint32_t most, std::uint32_t otherwise);
+[[nodiscard]] double real_or(const JsonCursor& json, std::string_view key, const Range& range,
+                             double otherwise);
+[[nodiscard]] std::uint64_t read_seed(const JsonCursor& json);
+
+// Reads the key "density" of a medium; null where only places are wanted.
+[[nodiscard]] std::shared_ptr<const DensityGrid> read_density(const JsonCursor& json, Scene& scene);
 // Reads one medium of "media"; its name must be new.
 void read_medium(const JsonCursor& json, Scene& scene);
 // The index of the medium that `key` names, which must be there.

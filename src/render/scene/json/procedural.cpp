@@ -10,12 +10,6 @@
 #include "render/scene/json/parts.h"
 
 namespace psf::render {
-namespace {
-
-constexpr std::uint32_t kMaxPieces = 1024;        // of a strand, or between two of its points
-constexpr std::uint32_t kMaxCubeSegments = 2048;  // of a noise-sphere
-constexpr std::uint32_t kMaxGrown = std::uint32_t{1} << 20;  // strands, leaves, blades
-constexpr Range kBend{0, 10, "in [0, 10]"};
 
 std::uint32_t integer_or(const JsonCursor& json, std::string_view key, std::uint32_t most,
                          std::uint32_t otherwise) {
@@ -32,6 +26,13 @@ std::uint64_t read_seed(const JsonCursor& json) {
   const auto seed = json.find("seed");
   return seed ? seed->whole() : 0;
 }
+
+namespace {
+
+constexpr std::uint32_t kMaxPieces = 1024;        // of a strand, or between two of its points
+constexpr std::uint32_t kMaxCubeSegments = 2048;  // of a noise-sphere
+constexpr std::uint32_t kMaxGrown = std::uint32_t{1} << 20;  // strands, leaves, blades
+constexpr Range kBend{0, 10, "in [0, 10]"};
 
 // Counts the pieces, of `copies`, before they are made.
 std::vector<Strand> read_strands(const JsonCursor& json, std::size_t copies, CopyCount& count) {
