@@ -35,7 +35,8 @@ struct EncodedColumn {
 // Decodes a zstd column to `out`. Throws Error{bad_input} where it does not decode to exactly the
 // size of `out`. Thread-safe.
 void decode_zstd(std::span<const std::byte> stored, Filter filter, std::span<std::byte> out);
-// Whether a zstd column decodes to `size` bytes that are all 0, of any filter. Throws what decode_zstd() throws.
+// Whether a zstd column decodes to `size` bytes that are all 0, of any filter. Throws what
+// decode_zstd() throws.
 [[nodiscard]] bool decodes_to_zeros(std::span<const std::byte> stored, std::size_t size);
 
 // Writes byte k of all 4-byte words, for k = 0 to 3, and then the bytes left over. `in` and `out`

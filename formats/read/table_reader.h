@@ -43,8 +43,9 @@ class TableReader {
   // channel and what needs it.
   [[nodiscard]] std::size_t require(std::string_view wanted, std::string_view wanted_by) const;
 
-  // Reads the records [first, first + count) of channel k as stored; out.size() is count * Channel::stride().
-  // Throws Error{bad_input} that names chunk, channel and records where a checksum is wrong.
+  // Reads the records [first, first + count) of channel k as stored; out.size() is count *
+  // Channel::stride(). Throws Error{bad_input} that names chunk, channel and records where a
+  // checksum is wrong.
   void read(std::size_t k, std::uint64_t first, std::size_t count, std::span<std::byte> out) const;
   // Reads records of an f16, f32, f64 or octahedral channel as floats; out.size() is count *
   // Channel::decoded_components().

@@ -93,6 +93,51 @@ TEST_CASE("Volume: what absorbs leaves exp(-sigma distance) of each colour") {
   }
 }
 
+TEST_CASE("Volume: what lies within a volume takes its part of each way, and none of the rest") {
+  // 1 is absorbed per unit of length, and on half a unit in the middle 3, or nothing in glass.
+  const auto with = [](bool glass) {
+    Scene scene;
+    const int thin = add_volume(scene, add_medium(scene, Rgb(1, 1, 1), Rgb(0, 0, 0)));
+    int inner = add_volume(scene, add_medium(scene, Rgb(3, 3, 3), Rgb(0, 0, 0)));
+    if (glass) inner = add_material(scene, MaterialKind::glass, 1);
+    scene.materials[static_cast<std::size_t>(inner)].ior = 1;
+    add_block(scene, {-1, -1, -1.5f}, {1, 1, 0}, thin);
+    add_block(scene, {-0.5f, -0.5f, -1}, {0.5f, 0.5f, -0.5f}, inner);
+    return scene;
+  };
+  for (const bool glass : {false, true}) {
+    Scene scene = with(glass);
+    const int lamp = add_material(scene, MaterialKind::diffuse, 0, 2);
+    scene.meshes.push_back(quad({-9, -9, -2}, {18, 0, 0}, {0, 18, 0}, lamp));
+    const auto integrator = make(scene, "path");
+    const Estimate e = batches(32, [&](std::uint32_t b) {
+      double sum = 0;
+      for (std::uint64_t i = 0; i < 512; ++i) {
+        const Ray through{{0.1f, 0.2f, 1}, {0, 0, -1}};
+        sum += double{pixel(trace(*integrator, through, SamplerKind::sobol, b, i)).y};
+      }
+      return sum / 512;
+    });
+    const double expected = 2 * std::exp(glass ? -1.0 : -2.5);
+    CAPTURE(glass, e.mean, e.error, expected);
+    CHECK(std::abs(e.mean - expected) < 4 * e.error + 1e-4 * expected);
+    CHECK(e.error < 0.02);
+  }
+
+  // From the floor through both, and through a sheet of which a quarter is there, to a point light.
+  Scene scene = with(false);
+  const int floor = add_material(scene, MaterialKind::diffuse, 0.5f);
+  scene.meshes.push_back(quad({-9, -9, -2}, {18, 0, 0}, {0, 18, 0}, floor));
+  const int sheet = add_material(scene, MaterialKind::diffuse, 0);
+  scene.materials[static_cast<std::size_t>(sheet)].opacity = 0.25f;
+  scene.meshes.push_back(quad({-1, -1, 0.5f}, {2, 0, 0}, {0, 2, 0}, sheet));
+  scene.lights.push_back(point_light({0, 0, 1}, 7));
+  const auto integrator = make(scene, "direct");
+  const Ray at_floor = ray({0.1f, 0, -1.9f}, {0, 0, -2});
+  const double lit = double{pixel(trace(*integrator, at_floor, SamplerKind::sobol, 0, 0)).y};
+  CHECK(lit == Approx(0.5 / kPiD * 7 / 9 * 0.75 * std::exp(-2.5)).epsilon(1e-4));
+}
+
 TEST_CASE("Volume: single scattering of a point light is its integral along the ray") {
   const double sigma_s = 0.08, sigma_t = 0.2, g = 0.5;
   const Vec3 lamp(0.4f, 1.5f, -3);

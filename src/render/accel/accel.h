@@ -13,9 +13,9 @@ namespace psf::render {
 
 // For `geometry` < meshes.size(), mesh number `geometry` was hit: `primitive` is the triangle, u
 // and v are the barycentric weights of its second and third corner. For `geometry` == meshes.size()
-// a sphere was hit, and `primitive` is its number; above, curves number
-// `geometry` - meshes.size() - 1, of which `primitive` is the segment. Where `instance` is the number of one, the
-// triangle is one of its prototype, and `normal` is not in the scene's space.
+// a sphere was hit, and `primitive` is its number; above, curves number `geometry` - meshes.size()
+// - 1, of which `primitive` is the segment. Where `instance` is the number of one, the triangle is
+// one of its prototype, and `normal` is not in the scene's space.
 struct Hit {
   static constexpr std::uint32_t kNoInstance = RTC_INVALID_GEOMETRY_ID;
   float distance = std::numeric_limits<float>::infinity();

@@ -41,10 +41,11 @@ struct JobResult {
 
 // Renders, and writes dump and pictures, of each frame where there are several: the dump gets one
 // frame after the other, or its name has #### for the number of the frame, and each gets a dump;
-// what ^C stopped is written as far as it came. Throws Error{usage} for a camera that is not there, an output that is an input or another output, or a
-// name that is none of a dump or a picture; Error{io} where a file cannot be written; Error{limit}
-// for a scene so far away that the dump's positions could not tell its vertices apart; and what
-// load_scene(), validate() and render() throw.
+// what ^C stopped is written as far as it came. Throws Error{usage} for a camera that is not there,
+// an output that is an input or another output, or a name that is none of a dump or a picture;
+// Error{io} where a file cannot be written; Error{limit} for a scene so far away that the dump's
+// positions could not tell its vertices apart; and what load_scene(), validate() and render()
+// throw.
 [[nodiscard]] JobResult run_job(const Job& job);
 
 // Throws Error{interrupted} that says what is kept, where ^C stopped the job.

@@ -20,9 +20,10 @@
 //
 //   path    Light sampling and scattering are combined by the power heuristic, with Russian
 //           roulette. At x_i every light is sampled once where there are at most 32 besides the
-//           sky; otherwise, and at all other vertices, one light is sampled, chosen by power. Bit
-//           l mod 32 of `visibility` is set where the sample of light l was unoccluded, or more than half
-//           of it came through blended surfaces; the sky has no bit. A constant sky is found by scattering alone, an environment map is sampled too.
+//           sky; otherwise, and at all other vertices, one light is sampled, chosen by power. Bit l
+//           mod 32 of `visibility` is set where the sample of light l was unoccluded, or more than
+//           half of it came through blended surfaces; the sky has no bit. A constant sky is found
+//           by scattering alone, an environment map is sampled too.
 //   direct  As `path`, but without light reflected between surfaces after x_i: the path ends at the
 //           depth of x_i.
 //   vpl     As `path`, but part of the light reflected between surfaces comes from virtual point

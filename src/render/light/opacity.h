@@ -39,9 +39,9 @@ class RayCaster {
   // All of them must outlive this object.
   RayCaster(const Scene& scene, const Accel& accel, const Shapes& shapes);
 
-  // Finds what the ray meets first, at a distance in (0, reach]; returns false where that is nothing.
-  // `direction` is unit; `time` as of Accel::intersect(). Takes a number of the sampler at each surface that is neither whole nor a
-  // hole. Adds the rays that this took to `rays`.
+  // Finds what the ray meets first, at a distance in (0, reach]; returns false where that is
+  // nothing. `direction` is unit; `time` as of Accel::intersect(). Takes a number of the sampler at
+  // each surface that is neither whole nor a hole. Adds the rays that this took to `rays`.
   [[nodiscard]] bool nearest(const Vec3& origin, const Vec3& direction, float reach, float time,
                              Sampler& sampler, Hit& hit, std::uint64_t& rays) const;
   // The share of the light that comes through on the way from origin + reach * direction.

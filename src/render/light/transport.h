@@ -93,7 +93,8 @@ class Transport {
 
   // The radiance that `v` scatters directly from the lights, weighted against scattering. With
   // `every` each light is sampled once, else one light chosen by power. Sets the visibility bit of
-  // each sampled light that `v` sees, by more than half through what is blended. Adds `throughput` times the radiance to `tally`.
+  // each sampled light that `v` sees, by more than half through what is blended. Adds `throughput`
+  // times the radiance to `tally`.
   [[nodiscard]] Rgb direct(const Vertex& v, bool every, Sampler& sampler, std::uint32_t& visibility,
                            std::uint64_t& rays, Tally& tally, const Rgb& throughput) const;
 

@@ -25,8 +25,8 @@ constexpr const char* kAllChannels = "all";
 // The channels to write, in the format's order: those that the format requires; `flags` and
 // `unfiltered`, without which pictures cannot be made; and of the others those in `optional`, where
 // "default" stands for those that files have unless told otherwise, and "all" for every one; empty:
-// "default", to which `kind` belongs where vertices can be in volumes. Then those of the layers of the light. Throws Error{usage} that names an unknown
-// channel and the known ones.
+// "default", to which `kind` belongs where vertices can be in volumes. Then those of the layers of
+// the light. Throws Error{usage} that names an unknown channel and the known ones.
 [[nodiscard]] std::vector<formats::Channel> record_channels(
     std::span<const std::string> optional = {}, std::span<const LayerInfo> layers = {},
     bool has_volumes = false);

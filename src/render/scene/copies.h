@@ -21,8 +21,8 @@ constexpr std::size_t kMaxInstances = std::size_t{1} << 20;
                                 std::span<const Imath::M44d> placements);
 
 // Adds a copy of `mesh` at each of `placements`, for row vectors. `exact`: positions are computed
-// in double, else placements are rounded to float first. `instanced`: as instances. Throws Error{bad_input} for a placement
-// without inverse.
+// in double, else placements are rounded to float first. `instanced`: as instances. Throws
+// Error{bad_input} for a placement without inverse.
 void add_copies(Scene& scene, const Mesh& mesh, std::span<const Imath::M44d> placements, bool exact,
                 bool instanced);
 

@@ -46,8 +46,8 @@ double largest(const Imath::V3d& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-// The bounds of all triangles, instances, spheres and curves. Values that are not finite, and indices of no vertex,
-// are reported later.
+// The bounds of all triangles, instances, spheres and curves. Values that are not finite, and
+// indices of no vertex, are reported later.
 Imath::Box3d bounds_of(const Scene& scene) {
   Imath::Box3d box;
   for (const Mesh& mesh : scene.meshes) {

@@ -49,8 +49,8 @@ class Texture {
   static std::string why_unreadable(const std::string& path,
                                     std::span<const unsigned char> bytes = {});
 
-  // The tangent-space normals, x along u and y along v, of heights whose white is above black by the width of a
-  // texel.
+  // The tangent-space normals, x along u and y along v, of heights whose white is above black by
+  // the width of a texel.
   [[nodiscard]] Texture normals_of_heights() const;
   // Whether its colours differ so little that it is no picture of colours.
   [[nodiscard]] bool grey() const;
