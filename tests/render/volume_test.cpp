@@ -173,6 +173,52 @@ TEST_CASE("Volume: single scattering of a point light is its integral along the 
   check(estimate(*make(block, "direct"), along, SamplerKind::sobol, 2048), expected);
 }
 
+TEST_CASE("Volume: the shaft of a spot light is its integral along rays of every kind") {
+  const double sigma_s = 0.08, sigma_t = 0.2;
+  Scene fog;
+  const int black = add_material(fog, MaterialKind::diffuse, 0);
+  fog.meshes.push_back(quad({-50, -50, -8}, {100, 0, 0}, {0, 100, 0}, black));
+  fog.meshes.push_back(quad({-50, -6, 50}, {100, 0, 0}, {0, 0, -100}, black));
+  fog.meshes.push_back(quad({-50, 6, -50}, {100, 0, 0}, {0, 0, 100}, black));
+  Light spot = point_light({0, 2, -3}, 5);
+  spot.kind = LightKind::spot;
+  spot.direction = Vec3(0.2f, -1, -0.1f).normalized();
+  spot.cos_inner = 0.985f;
+  spot.cos_outer = 0.94f;
+  fog.lights.push_back(spot);
+  fog.medium = add_medium(fog, grey(static_cast<float>(sigma_t - sigma_s)),
+                          grey(static_cast<float>(sigma_s)));
+  const Imath::V3d lamp(spot.position), axis(spot.direction);
+  struct Case {
+    Ray along;
+    double end;  // at a wall
+    bool lit;
+  };
+  // Across the cone; down in it; up out of it; up into it; and past it, before the lamp and behind.
+  for (const Case& c :
+       {Case{{{0, 0, 0}, {0, 0, -1}}, 8, true},
+        Case{{{0.1f, 1, -3.1f}, Vec3(0.1f, -1, 0).normalized()}, 7.03, true},
+        Case{{{0.4f, -1, -3.2f}, Vec3(0.3f, 1, 0.1f).normalized()}, 7.34, true},
+        Case{{{3, -5, -3}, Vec3(-0.3f, 1, 0).normalized()}, 11.48, true},
+        Case{{{0, 3, 0}, {0, 0, -1}}, 8, false}, Case{{{4, 0, 0}, {0, 0, -1}}, 8, false}}) {
+    const double expected = integral_to(c.end, [&](double t) {
+      const Imath::V3d from = Imath::V3d(c.along.origin) + Imath::V3d(c.along.direction) * t - lamp;
+      const double r = from.length(), cosine = from.dot(axis) / r;
+      const double rise = std::clamp((cosine - 0.94) / (0.985 - 0.94), 0.0, 1.0);
+      return 5 * rise * rise * (3 - 2 * rise) * sigma_s * std::exp(-sigma_t * (t + r)) /
+             (4 * kPiD * r * r);
+    });
+    CAPTURE(c.along.origin, c.along.direction);
+    CHECK((expected > 1e-4) == c.lit);
+    const Estimate e = estimate(*make(fog, "direct"), c.along, SamplerKind::sobol, 4096);
+    if (c.lit) {
+      check(e, expected);
+    } else {
+      CHECK(e.mean == 0);
+    }
+  }
+}
+
 TEST_CASE("Volume: a small sphere light scatters as a point, whether it is sampled or met") {
   Scene point, sphere;
   for (Scene* scene : {&point, &sphere}) {

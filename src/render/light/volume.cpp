@@ -1,8 +1,46 @@
 // Media between the surfaces: where a walk is scattered in them, and what of a light they let through.
+#include <algorithm>
+
+#include "render/light/lit_stretch.h"
 #include "render/light/medium.h"
+#include "render/light/medium_channels.h"
 #include "render/light/transport.h"
 
 namespace psf::render {
+namespace {
+
+bool has_place(const Light& light) {
+  return light.kind != LightKind::directional;
+}
+
+// How many of the free paths that may meet a light are sampled by it.
+constexpr float kByLight = 0.5f;
+
+// fly() in a medium that is the same everywhere, where the distance may also be sampled by a light
+// without extent. Both ways are combined by the balance heuristic, given the light.
+template <class Nearest>
+Flight fly_by_light(const Medium& medium, const std::vector<Light>& lights, const Ray& ray,
+                    const Rgb& carried, Sampler& sampler, Rgb& weight, Nearest nearest) {
+  const float surface = nearest(RayCaster::kEndless);
+  const Vec2 u = sampler.next_2d();
+  const auto count = static_cast<float>(lights.size());
+  const auto light = std::min(lights.size() - 1, static_cast<std::size_t>(u.x * count));
+  const LitStretch stretch(lights[light], ray, surface);
+  const float by_light = stretch.empty() ? 0 : kByLight;
+  const float distance = u.y < by_light ? stretch.sample(sampler.next_2d().x)
+                                        : sample_distance(medium, carried, sampler);
+  const Flight flight{distance < surface, std::min(distance, surface)};
+  const Rgb sigma = medium.sigma_t(), choice = channel_choice(carried);
+  Rgb left = transmittance(medium, ray, flight.distance, sampler);
+  if (flight.scattered) left = left * sigma;
+  const Rgb chosen = choice * left;
+  float density = (1 - by_light) * (chosen.x + chosen.y + chosen.z);
+  if (flight.scattered && by_light > 0) density += by_light * stretch.density(flight.distance);
+  weight = density > 0 ? left * (1 / density) : Rgb(0, 0, 0);
+  return flight;
+}
+
+}  // namespace
 
 bool Transport::crosses(const Surface& surface, Media& media) const {
   const Material& material = scene_.materials[static_cast<std::size_t>(surface.material)];
@@ -43,8 +81,12 @@ float Transport::arrive(Walk& walk, Surface& surface, Sampler& sampler, std::uin
       flight.distance = nearest(kUnbounded);
     } else {
       Rgb weight;
-      flight = fly(scene_.media[static_cast<std::size_t>(medium)], walk.ray, walk.throughput,
-                   sampler, weight, nearest);
+      const Medium& in = scene_.media[static_cast<std::size_t>(medium)];
+      const bool by_light = in.density == nullptr &&
+                            std::any_of(scene_.lights.begin(), scene_.lights.end(), has_place);
+      flight = by_light ? fly_by_light(in, scene_.lights, walk.ray, walk.throughput, sampler,
+                                       weight, nearest)
+                        : fly(in, walk.ray, walk.throughput, sampler, weight, nearest);
       walk.throughput = walk.throughput * weight;
     }
     if (flight.scattered) {
