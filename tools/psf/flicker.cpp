@@ -177,9 +177,11 @@ void write_sheets(const FlickerOptions& options, const FrameSpan& span,
   sheet_options.columns = reference.shown.size() + 1;
   sheet_options.exposure = options.exposure;
   film::ContactSheet sheet(first.width, first.height, sheet_options);
+  const std::string trimmed =
+      options.trim.empty() ? "" : fmt::format(", without {} of the pixels", options.trim);
   sheet.set_head(
-      {"Error and flicker", fmt::format("frames {}:{}, epsilon {:g}, against {}", span.first,
-                                        span.last, options.epsilon, options.reference)});
+      {"Error and flicker", fmt::format("frames {}:{}, epsilon {:g}{}, against {}", span.first,
+                                        span.last, options.epsilon, trimmed, options.reference)});
   double most = 0;
   for (const Row& row : rows) most = std::max(most, largest_shown(row.measured));
   const auto add = [&](const Row& row) {
