@@ -44,6 +44,8 @@ void for_each_channel(const Visit& visit) {
       "alpha", [](auto& of) -> auto& { return of.coverage; });
   visit(
       "kind", [](auto& of) -> auto& { return of.kind; });
+  visit(
+      "rest_position", [](auto& of) -> auto& { return of.rest_position; });
 }
 
 // Whether records have the channel of this name.

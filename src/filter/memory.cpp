@@ -59,6 +59,17 @@ std::uint64_t memory_per_record_of_kinds(std::uint64_t layers) {
   return (1 + layers) * kVector + 2 * kWord + 1;  // c_bar, neighbours, radius, role
 }
 
+std::uint64_t memory_per_record_of_window(const Parameters& parameters, std::uint64_t layers) {
+  constexpr std::uint64_t kMoments = 24, kWeights = 4 + kWord;  // of [relit]; added, material
+  const std::uint64_t averages = 1 + layers;
+  const std::uint64_t kept = kMoments + kWord + averages * (kVector + kSum);  // and results
+  // Of both frames: columns, radius, role, lists, and values with their moments.
+  const std::uint64_t columns = kVector + compared(parameters) + kWeights + 1;
+  const std::uint64_t both = 2 * (columns + kWord + 1 + 4 * kWord + (2 + averages) * kVector);
+  const std::uint64_t means = (1 + averages) * kVector + 2 * kWord;
+  return kept + both + means + (1 + averages) * kSum * 2;
+}
+
 std::uint64_t memory_per_layer(const Parameters& parameters) {
   // The average, and what is averaged in place of the contribution.
   constexpr std::uint64_t kValues = 2 * kVector;

@@ -13,6 +13,10 @@ namespace psf::filter {
 [[nodiscard]] std::uint64_t memory_per_record(const Parameters& parameters);
 // The most bytes per photon of a block that [density] needs, in addition to the photons themselves.
 [[nodiscard]] std::uint64_t memory_per_photon(const Parameters& parameters);
+// Bytes per record of a block that a window of frames needs in addition: what was averaged of the
+// frame itself, and a pair of frames as one set.
+[[nodiscard]] std::uint64_t memory_per_record_of_window(const Parameters& parameters,
+                                                        std::uint64_t layers);
 // The most that a layer with contributions adds to it.
 // Bytes per record in addition where vertices in volumes are filtered apart: the results of the
 // others wait beside that run. `layers`: number of layers that are averaged.

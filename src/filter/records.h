@@ -54,12 +54,13 @@ struct Records {
   std::span<const float> hit_distance;        // h_i, of the first ray from x_i; infinity: a miss
   std::span<const Vec3> direction;            // omega_i, unit, toward the camera
   std::span<const std::uint32_t> material;
-  std::span<const float> roughness;         // q_i, perceptual, of the smoothest lobe; 1: diffuse
-  std::span<const float> coverage = {};     // 0: the path is of the background; for pictures
-  std::span<const Layer> layers = {};       // averaged beside c_i, with the same weights
-  Photons photons = {};                     // not of the records' number
-  std::span<const std::uint8_t> kind = {};  // what x_i lies on; empty: surfaces and curves alone
-  Taken taken = Taken::all;                 // the other vertices have no part
+  std::span<const float> roughness;          // q_i, perceptual, of the smoothest lobe; 1: diffuse
+  std::span<const float> coverage = {};      // 0: the path is of the background; for pictures
+  std::span<const Layer> layers = {};        // averaged beside c_i, with the same weights
+  Photons photons = {};                      // not of the records' number
+  std::span<const std::uint8_t> kind = {};   // what x_i lies on; empty: surfaces and curves alone
+  Taken taken = Taken::all;                  // the other vertices have no part
+  std::span<const Vec3> rest_position = {};  // x_i at frame 0: for windows of frames
 
   [[nodiscard]] std::size_t size() const { return flags.size(); }
   [[nodiscard]] bool in_volume(std::size_t i) const { return !kind.empty() && kind[i] == kVolume; }

@@ -28,6 +28,7 @@ struct BlockRecords {
   std::vector<float> roughness;
   std::vector<float> coverage;
   std::vector<std::uint8_t> kind;
+  std::vector<Vec3> rest_position;
   std::uint64_t not_finite_coverage = 0;  // values that are 1 in place of what the file has
   // The columns of the layers, and the views of them that view() gives out.
   struct LayerColumns {

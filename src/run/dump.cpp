@@ -63,11 +63,23 @@ Dump::Dump(const std::string& path, const std::optional<VertexRule>& rule,
     : reader_(std::make_shared<formats::Reader>(path)),
       metadata_(metadata_of(*reader_)),
       rule_(rule) {
+  if (rule_) static_cast<void>(VertexCut(*reader_, *rule_, metadata_.shade_rate));
+  set_cameras(frame);
+  if (reader_->records() == 0) {
+    throw Error(ErrorCode::bad_input,
+                path + ": holds no committed pass yet; wait for the renderer's first one");
+  }
+  set_pass_bounds();
+}
+
+void Dump::set_cameras(std::optional<std::uint32_t> frame) {
+  const std::string& path = reader_->path();
   if (frame && metadata_.frames && *frame >= metadata_.frames->first) {
     const std::size_t k = *frame - metadata_.frames->first;
     if (k < metadata_.frames->cameras.size()) metadata_.cameras = metadata_.frames->cameras[k];
   }
-  if (rule_) static_cast<void>(VertexCut(*reader_, *rule_, metadata_.shade_rate));
+  cameras_.clear();
+  pixels_ = 0;
   if (metadata_.cameras.empty()) {
     throw Error(ErrorCode::bad_input,
                 path +
@@ -84,11 +96,12 @@ Dump::Dump(const std::string& path, const std::optional<VertexRule>& rule,
     cameras_.push_back({camera.width, camera.height, camera.angle_per_pixel});
     pixels_ += std::uint64_t{camera.width} * camera.height;
   }
-  if (reader_->records() == 0) {
-    throw Error(ErrorCode::bad_input,
-                path + ": holds no committed pass yet; wait for the renderer's first one");
-  }
-  set_pass_bounds();
+}
+
+Dump Dump::of_frame(std::uint32_t frame) const {
+  Dump other(*this);
+  other.set_cameras(frame);
+  return other;
 }
 
 Dump Dump::at(const std::optional<VertexRule>& rule) const {

@@ -23,7 +23,7 @@ namespace psf::run {
 struct ChannelSet {
   std::optional<std::size_t> flags, position, distance, throughput, contribution, unfiltered, pixel,
       camera, normal, reflectance, visibility, hit_distance, direction, material, roughness,
-      coverage, kind;
+      coverage, kind, rest_position;
   std::vector<LightLayer> layers;
   std::optional<PhotonChannels> photons;
 };
@@ -41,6 +41,9 @@ class Dump {
   // what the file says. Throws what VertexCut throws. What is refreshed is the one that refresh() is
   // called on.
   [[nodiscard]] Dump at(const std::optional<VertexRule>& rule) const;
+
+  // The same file with the cameras at `frame`, where it tells of them.
+  [[nodiscard]] Dump of_frame(std::uint32_t frame) const;
 
   // Takes in what was committed since the file was read; returns whether there was anything new.
   // Throws what the constructor throws.
@@ -70,14 +73,18 @@ class Dump {
   // none of this name. Throws Error{bad_input} where it has another type.
   [[nodiscard]] std::optional<std::size_t> find(std::string_view channel) const;
 
+  // The same, where the dump must have it. Throws Error{bad_input} that names `wanted_by` and how to
+  // do without, where there is a way.
+  [[nodiscard]] std::size_t require(std::string_view channel, std::string_view wanted_by,
+                                    std::string_view instead = {}) const;
+
   // Reads the paths [range.first, range.last), columns in parallel. What of a layer of the light is
   // not finite is 0, of alpha 1, and counted. Throws Error{bad_input} that names a record whose
   // pixel or camera does not exist. Thread-safe.
   void read(const filter::PathRange& range, const ChannelSet& channels, BlockRecords& out) const;
 
  private:
-  [[nodiscard]] std::size_t require(std::string_view channel, std::string_view wanted_by,
-                                    std::string_view instead = {}) const;
+  void set_cameras(std::optional<std::uint32_t> frame);
   void set_pass_bounds();
   void require_angles() const;
   void check_pixels(const filter::PathRange& range, const BlockRecords& records) const;

@@ -29,7 +29,11 @@ class DumpFilter {
         copies_(copies),
         first_(run.passes.first),
         blocks_(dump, channels_of(dump, run), run.parameters.block, run.parameters.radius.count,
-                run.passes.first) {}
+                run.passes.first) {
+    if (run.window.others.empty()) return;
+    window_.emplace(dump.pass_bounds()[first_], run.window, run.parameters,
+                    [&run](const Dump& other) { return channels_of(other, run); });
+  }
 
   // All passes up to `last`, not included.
   FilterResult run(std::size_t last) {
@@ -63,6 +67,10 @@ class DumpFilter {
                   dump.reader().path() +
                       ": its layers of the light are of paths, and `estimator density` takes "
                       "photons; --layers none does without them");
+    }
+    if (!run.window.others.empty() && run.window.terms.rest) {
+      channels.rest_position =
+          dump.require("rest_position", "`positions rest`", "give `positions world`");
     }
     if (run.layers.alpha) channels.coverage = dump.find("alpha");
     if (channels.coverage) check_no_background(dump, channels.layers);
@@ -104,9 +112,9 @@ class DumpFilter {
     const std::uint64_t writing = CameraPictures::kBytesToWrite +
                                   layers * CameraPictures::kBytesToWriteALayer +
                                   (alpha ? CameraPictures::kBytesToWriteOfAlpha : 0);
-    outcome_.memory =
-        plan_memory(dump_, blocks_.channels(),
-                    {run_.parameters, first_, last, run_.max_memory, copies_ * sums + writing});
+    outcome_.memory = plan_memory(dump_, blocks_.channels(),
+                                  {run_.parameters, first_, last, run_.max_memory,
+                                   copies_ * sums + writing, 0, 0, window_.has_value()});
     blocks_.set_last(last, outcome_.memory.blocks > 1);
     outcome_.passes = last - first_;
     outcome_.blocks = blocks_.count();
@@ -114,12 +122,14 @@ class DumpFilter {
   }
 
   void filter(const BlockLoop::Visit& visit) {
-    outcome_.seconds_read = blocks_.seconds_read();
+    outcome_.seconds_read = blocks_.seconds_read() + (window_ ? window_->seconds_read() : 0);
     filter::Estimates estimates;
     core::undisturbed([&] {
       filter::radii(run_.parameters.radius, visit.records, visit.block, radius_);
-      estimates = filter::estimate(visit.records, radius_, visit.block, run_.parameters);
+      estimates = window_ ? window_->estimate(visit, radius_)
+                          : filter::estimate(visit.records, radius_, visit.block, run_.parameters);
     });
+    if (window_) outcome_.window = window_->counts();
     outcome_.statistics += estimates.statistics;
     outcome_.not_finite_in_layers += visit.not_finite_in_layers;
     outcome_.not_finite_coverage += visit.not_finite_coverage;
@@ -159,6 +169,7 @@ class DumpFilter {
   std::size_t first_;  // pass
   BlockLoop blocks_;
   BlockLoop::Visitor visitor_ = [this](const BlockLoop::Visit& visit) { filter(visit); };
+  std::optional<WindowReader> window_;
   std::size_t next_snapshot_ = 0;
   std::vector<float> radius_;
   FilterResult outcome_;
@@ -168,6 +179,7 @@ class DumpFilter {
 
 void check(const Dump& dump, const FilterRequest& run) {
   run.parameters.validate();
+  check_window(dump, run.window, run.parameters);
   const std::uint64_t passes = last_pass(dump, run.passes) - run.passes.first;
   for (const std::uint64_t snapshot : run.snapshots) {
     if (snapshot >= 1 && snapshot <= passes) continue;

@@ -14,6 +14,7 @@
 #include "run/noise_share.h"
 #include "run/passes.h"
 #include "run/pictures.h"
+#include "run/window.h"
 
 namespace psf::run {
 
@@ -32,6 +33,7 @@ struct FilterRequest {
   // exceed it, blocks are not read ahead, which is slower and gives the same pictures.
   std::optional<std::uint64_t> max_memory;
   bool with_noise = false;  // measure FilterResult::noise
+  Window window;            // other frames whose vertices count too; not with follow_dump()
 };
 
 struct FilterResult {
@@ -42,6 +44,7 @@ struct FilterResult {
   std::uint64_t not_finite_in_layers = 0;  // values of layers of the light that count as 0
   std::uint64_t not_finite_coverage = 0;   // values of alpha that count as 1
   std::uint64_t overflows = 0;             // paths left out because their radiance overflows
+  filter::WindowCounts window;             // balls in other frames, and those that counted
   double seconds_read = 0;  // time spent waiting for the reader, which works beside the filter
   double seconds_film = 0;  // time spent adding up pictures
   MemoryEstimate memory;

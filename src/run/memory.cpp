@@ -134,6 +134,10 @@ class Planner {
                    (has_kinds_ ? filter::memory_per_record_of_kinds(averaged_layers_) : 0) +
                    r_.beside_a_record) +
         r_.beside;
+    if (r_.window) {
+      result.filter += longest * (record_bytes_ + filter::memory_per_record_of_window(
+                                                      r_.parameters, averaged_layers_));
+    }
     if (photon_bytes_ > 0) {
       const std::uint64_t photons = most_photons(size, dump_, r_.first_pass, r_.last_pass);
       result.block += photons * photon_bytes_;

@@ -32,6 +32,7 @@ struct MemoryRequest {
   std::uint64_t bytes_a_pixel;         // for all pictures, and for writing them
   std::uint64_t beside = 0;            // bytes that the run takes in addition to the filter
   std::uint64_t beside_a_record = 0;   // the same, per record of a block
+  bool window = false;                 // with blocks of other frames, one after the other
 };
 
 // Estimates the memory of a run. With several threads and blocks the estimate is for two blocks,

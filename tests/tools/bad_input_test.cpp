@@ -223,8 +223,8 @@ TEST_CASE("a dump whose writer was killed is filtered up to its last commit") {
 TEST_CASE("every verb has a help with an example") {
   for (const std::string command :
        {"psf", "psf filter", "psf info", "psf verify", "psf recover", "psf cat", "psf compare",
-        "psf export", "psf sweep", "psf converge", "psf tune", "psf ablate", "psf explain",
-        "psf report", "psf-render"}) {
+        "psf flicker", "psf export", "psf sweep", "psf converge", "psf tune", "psf ablate",
+        "psf explain", "psf report", "psf-render"}) {
     const Outcome outcome = run(command + " --help");
     CHECK(outcome.code == 0);
     CHECK(outcome.out.find("Example:\n  " + command.substr(0, command.find(' '))) !=

@@ -25,6 +25,9 @@ class VerbInputs {
       "shapes": [{"shape": "sphere", "center": [0, 1, 0], "radius": 1, "material": "grey"}]})";
     make("psf-render IN/room.json -o IN/a.pvb --passes 4 --layers lights --quiet --json IN/a.json");
     make("psf filter IN/a.pvb -o IN/a.exr");
+    for (const char* frame : {"0000", "0001", "0002"}) {
+      std::filesystem::copy_file(in() + "a.exr", in() + "s." + frame + ".exr");
+    }
     make("psf tune IN/a.pvb --r0 4px,8px --block 1pass --json IN/tuned.json");
     make("psf sweep IN/a.pvb --reference IN/a.exr --r0 4px -o IN/sweep --pictures");
     empty();
@@ -84,6 +87,8 @@ inline const std::vector<std::string>& every_verb() {
       "psf export IN/a.pvb -o OUT/e.ply --json OUT/e.json",
       "psf export IN/a.pvb -o OUT/arrays --json OUT/e.json",
       "psf compare IN/a.exr IN/a.exr --error OUT/d.exr --error OUT/d.png --json OUT/d.json",
+      "psf flicker IN/s.####.exr IN/s.####.exr --reference IN/s.####.exr --sheet OUT/k.png --json "
+      "OUT/k.json --quiet",
       "psf relight IN/a.exr sky=2,1,0.5 -o OUT/l.exr -o OUT/l.png --json OUT/l.json",
       "psf sweep IN/a.pvb --reference IN/a.exr --r0 4px,8px --pictures -o OUT/sweep --json "
       "OUT/s.json",

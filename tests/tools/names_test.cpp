@@ -40,6 +40,7 @@ const std::vector<Clash> kClashes = {
     {"psf compare OUT/a.exr OUT/sky.exr --error OUT/a.exr", "a.exr"},
     {"psf compare OUT/sky.exr OUT/a.exr --error OUT/d.png --error OUT/a.exr", "a.exr"},
     {"psf compare OUT/a.exr OUT/sky.exr --json OUT/sky.exr", "sky.exr"},
+    {"psf flicker OUT/s.####.exr --reference OUT/s.####.exr --json OUT/s.0001.exr", "s.0001.exr"},
     {"psf sweep OUT/a.pvb --reference OUT/a.exr --r0 4px -o OUT/s --json OUT/a.exr", "a.exr"},
     {"psf sweep OUT/study/sweep.csv --reference OUT/a.exr --r0 4px -o OUT/study", "a.exr"},
     {"psf sweep OUT/a.pvb --reference OUT/study/0001.exr --r0 4px --pictures -o OUT/study",
@@ -65,6 +66,7 @@ const std::vector<std::string> kTwice = {
     "psf recover OUT/a.pvb OUT/x.pvb --json OUT/x.pvb",
     "psf export OUT/a.pvb -o OUT/x.csv --json OUT/x.csv",
     "psf compare OUT/a.exr OUT/sky.exr --error OUT/x.png --error OUT/study/../x.png",
+    "psf flicker OUT/s.####.exr --reference OUT/s.####.exr --sheet OUT/x.png --sheet OUT/./x.png",
     "psf sweep OUT/a.pvb --reference OUT/a.exr --r0 4px -o OUT/x --json OUT/x/sweep.json",
     "psf converge OUT/a.pvb --reference OUT/a.exr --r0 4px -o OUT/x --json OUT/x/converge.csv",
     "psf ablate OUT/a.pvb -o OUT/x.png -o OUT/./x.png",
@@ -99,7 +101,8 @@ void place_scene_of_files(const std::string& folder) {
 // The inputs of the clashes, in the folder that is written to.
 void place_inputs(const VerbInputs& inputs) {
   inputs.empty();
-  for (const char* name : {"room.json", "a.pvb", "a.exr", "a.json", "tuned.json"}) {
+  for (const char* name : {"room.json", "a.pvb", "a.exr", "a.json", "tuned.json", "s.0000.exr",
+                           "s.0001.exr", "s.0002.exr"}) {
     fs::copy(inputs.in() + name, inputs.out() + name);
   }
   fs::copy(inputs.in() + "a.exr", inputs.out() + "sky.exr");

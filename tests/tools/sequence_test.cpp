@@ -1,5 +1,8 @@
 // Dumps of several frames, from the renderer to pictures, as programs.
+#include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "catch.h"
 #include "command.h"
@@ -49,4 +52,119 @@ TEST_CASE("psf filter takes one frame of a sequence and refuses to mix them") {
     CHECK(cut.code == 2);
     CHECK(cut.err.find("cannot be joined with others, nor cut") != std::string::npos);
   }
+}
+
+namespace {
+
+// Three frames of a moving lamp, ball and camera, in one dump and in a dump each.
+class Lantern {
+ public:
+  Lantern() {
+    const std::string render = "psf-render " PSF_SOURCE_DIR
+                               "/sample_data/lantern.json --size 32x24 --passes 2 --quiet "
+                               "--channels default,rest_position --frames 3:6 -o ";
+    must(render + in("all.pvb"));
+    must(render + in("one.####.pvb"));
+  }
+  [[nodiscard]] std::string in(const std::string& name) const { return folder_ / name; }
+  std::string must(const std::string& command) const {
+    const Outcome outcome = psf::tests::run(command);
+    INFO(command << "\n" << outcome.err);
+    REQUIRE(outcome.code == 0);
+    return outcome.out;
+  }
+  [[nodiscard]] std::string text(const std::string& name) const { return read_text(in(name)); }
+
+ private:
+  TempFolder folder_;
+};
+
+}  // namespace
+
+TEST_CASE("psf filter writes a picture a frame, alone the bytes of --frame, of one dump or many") {
+  const Lantern lantern;
+  const std::string all = lantern.in("all.pvb"), many = lantern.in("one.####.pvb");
+  lantern.must("psf filter --quiet " + all + " -o " + lantern.in("a.####.png") + " -o " +
+               lantern.in("a.####.exr"));
+  lantern.must("psf filter --quiet --window 1 " + all + " -o " + lantern.in("w.####.exr"));
+  lantern.must("psf filter --quiet " + many + " -o " + lantern.in("m.####.png"));
+  for (const char* frame : {"3", "4", "5"}) {
+    const std::string number = std::string("000") + frame;
+    lantern.must("psf filter --quiet --frame " + std::string(frame) + " " + all + " -o " +
+                 lantern.in("f.####.png") + " -o " + lantern.in("f.####.exr"));
+    CHECK(lantern.text("a." + number + ".png") == lantern.text("f." + number + ".png"));
+    CHECK(lantern.text("m." + number + ".png") == lantern.text("f." + number + ".png"));
+    CHECK(lantern.text("a." + number + ".exr") == lantern.text("f." + number + ".exr"));
+    CHECK(lantern.text("w." + number + ".exr") == lantern.text("f." + number + ".exr"));
+  }
+}
+
+TEST_CASE("psf filter --window gives the same bytes of one dump and many, and for any threads") {
+  const Lantern lantern;
+  const std::string all = lantern.in("all.pvb"), many = lantern.in("one.####.pvb");
+  const std::string report =
+      lantern.must("psf filter --quiet --window 3 " + all + " -o " + lantern.in("a.####.png"));
+  CHECK(report.find("frames     3:6, window 3, relit 1.5, positions rest; ") != std::string::npos);
+  lantern.must("psf filter --quiet --threads 1 --window 3 " + all + " -o " +
+               lantern.in("t.####.png"));
+  lantern.must("psf filter --quiet --window 3 " + many + " -o " + lantern.in("m.####.png"));
+  lantern.must("psf filter --quiet --window 3 --frame 4 " + many + " -o " + lantern.in("f.png"));
+  lantern.must("psf filter --quiet " + all + " -o " + lantern.in("alone.####.png"));
+  for (const std::string frame : {"0003", "0004", "0005"}) {
+    CHECK(lantern.text("a." + frame + ".png") == lantern.text("t." + frame + ".png"));
+    CHECK(lantern.text("a." + frame + ".png") == lantern.text("m." + frame + ".png"));
+    CHECK(lantern.text("a." + frame + ".png") != lantern.text("alone." + frame + ".png"));
+  }
+  CHECK(lantern.text("f.png") == lantern.text("a.0004.png"));
+}
+
+TEST_CASE("Options about frames that do not fit are named in one line") {
+  const Lantern lantern;
+  const std::string all = " " + lantern.in("all.pvb"), one = " " + lantern.in("one.0004.pvb");
+  const std::string out = " -o " + lantern.in("x.png"), outs = " -o " + lantern.in("x.####.png");
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"psf filter --window 2" + all + outs, "--window 2: as many frames before as behind"},
+      {"psf filter --window 0" + all + outs, "give an odd number"},
+      {"psf filter --window 3" + all + out, "x.png: a picture a frame needs #### in its name"},
+      {"psf filter --relit 2" + all + outs, "--relit: is about other frames; give --window K"},
+      {"psf filter --window 3 --relit 0" + all + outs, "--relit: '0': write a number above 0"},
+      {"psf filter --window 3 --positions here" + all + outs, "write rest or world"},
+      {"psf filter --window 3 --plane 1" + all + outs, "give --plane off or --positions world"},
+      {"psf filter --window 3 --iterations 2" + all + outs, "cannot be averaged again"},
+      {"psf filter --window 3 --estimator hash" + all + outs, "only --estimator average"},
+      {"psf filter --passes 0:2" + all + outs, "--passes: are of one frame"},
+      {"psf filter --window 3 --frame 7" + one + out, "7 is none of them"}};
+  for (const auto& [command, message] : wrong) {
+    const Outcome outcome = psf::tests::run(command + " --quiet");
+    INFO(command << "\n" << outcome.err);
+    CHECK(outcome.code == 2);
+    CHECK(outcome.err.find(message) != std::string::npos);
+    CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+  }
+  lantern.must("psf cat" + all + " -o " + lantern.in("bare.pvb") + " --drop rest_position --quiet");
+  const Outcome bare = psf::tests::run("psf filter --quiet --window 3 --positions rest " +
+                                       lantern.in("bare.pvb") + outs);
+  CHECK(bare.code == 3);
+  CHECK(bare.err.find("has no channel rest_position") != std::string::npos);
+  CHECK(psf::tests::run("psf filter --window 3 " + lantern.in("gone.####.pvb") + outs).code == 4);
+}
+
+TEST_CASE("psf flicker prints a row a sequence, and a sheet") {
+  const Lantern lantern;
+  lantern.must("psf filter --quiet " + lantern.in("all.pvb") + " -o " + lantern.in("a.####.exr"));
+  lantern.must("psf filter --quiet --r0 0 " + lantern.in("all.pvb") + " -o " +
+               lantern.in("b.####.exr"));
+  const std::string a = lantern.in("a.####.exr"), b = lantern.in("b.####.exr");
+  const std::string command = "psf flicker --quiet " + a + " " + b + " --reference " + a;
+  const std::string text =
+      lantern.must(command + " --frames 3:6 --label same --label other --sheet " +
+                   lantern.in("s.png") + " --json " + lantern.in("f.json"));
+  CHECK(text.find("           0           0  same\n") != std::string::npos);
+  CHECK(text.find("  other\n") != std::string::npos);
+  CHECK(lantern.text("s.png").starts_with("\x89PNG"));
+  CHECK(lantern.text("f.json").find("\"label\": \"other\"") != std::string::npos);
+  CHECK(psf::tests::run(command).code == 2);                    // there is no frame 0
+  CHECK(psf::tests::run(command + " --frames 3:5").code == 2);  // too few
+  CHECK(psf::tests::run(command + " --frames 3:7").code == 4);  // one is missing
+  CHECK(psf::tests::run(command + " --frames 3:6 --label one").code == 2);
 }

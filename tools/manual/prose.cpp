@@ -28,7 +28,13 @@ const std::map<std::string, const char*> kProse = {
      "default and whose channel the dump lacks is off, with a note.\n"
      "An .exr holds the picture as R,G,B and, as layers, the same paths without filter, the "
      "number of neighbors, the radius, albedo and normal; every parameter is an attribute. A "
-     "dump of several cameras gives a picture for each, with its name before the ending."},
+     "dump of several cameras gives a picture for each, with its name before the ending.\n"
+     "A sequence of frames, in one dump or in a dump each, gives a picture for each frame where "
+     "the "
+     "name of the output has #### for its number. With --window K the vertices of K frames are "
+     "averaged, of other frames only balls whose mean is within --relit standard errors of the "
+     "frame's own, so that what is lit otherwise there has no part; what moves finds itself where "
+     "the dump has the channel rest_position."},
     {"psf-info",
      "Only what it needs of the file is read: a dump of any size is opened in milliseconds, also "
      "while it grows, unless --stats asks for every value."},
@@ -51,6 +57,11 @@ const std::map<std::string, const char*> kProse = {
      "shows it. Pixels that are not finite are left out and counted, and then no bound holds. "
      "Any program's OpenEXR pictures will do; where several layers could be meant they are "
      "listed."},
+    {"psf-flicker",
+     "The error of a frame is (x - r) / sqrt(r^2 + epsilon) by pixel and channel. Printed are the "
+     "mean of its square over the frames, and the flicker: the variance over the frames of its "
+     "change from one frame to the next, averaged over the pixels. Errors that have nothing to do "
+     "with each other flicker by twice their variance, an error that stays does not."},
     {"psf-relight",
      "A picture is linear in its lights, also when it is filtered: weights of its layers change "
      "them afterwards, without rendering or filtering again. psf-render(1) writes the layers with "

@@ -1,7 +1,6 @@
 // psf compare: the error of pictures against a reference.
 #include <fmt/format.h>
 
-#include <charconv>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -23,6 +22,7 @@
 #include "metrics/reference.h"
 #include "notes.h"
 #include "rectangle.h"
+#include "trim.h"
 #include "verbs.h"
 
 namespace psf::tools {
@@ -52,19 +52,6 @@ metrics::Region region_of(const std::string& text, const film::Picture& picture)
                             picture.path, picture.width, picture.height));
   }
   return region;
-}
-
-double parse_trim(const std::string& text) {
-  if (text.empty()) return 0;
-  const bool percent = text.back() == '%';
-  const char* end = text.data() + text.size() - (percent ? 1 : 0);
-  double share = 0;
-  const auto [rest, error] = std::from_chars(text.data(), end, share);
-  if (percent) share /= 100;
-  if (error != std::errc() || rest != end || !(share >= 0 && share < 1)) {
-    throw Error(ErrorCode::usage, "--trim " + text + ": no share, write 0.1% or 0.001, below 1");
-  }
-  return share;
 }
 
 // Where there is a bound, in which direction it makes sense.

@@ -20,17 +20,16 @@
 #include "core/text.h"
 #include "film/image.h"
 #include "film/picture_names.h"
+#include "filter_frames.h"
 #include "filter_options.h"
 #include "filter_report.h"
 #include "formats/write/appender.h"
 #include "notes.h"
-#include "pass_range.h"
 #include "run/attributes.h"
 #include "run/filter_dump.h"
 #include "tuned.h"
 #include "verbs.h"
 #include "version.h"
-#include "vertex_option.h"
 
 namespace psf::tools {
 namespace {
@@ -50,15 +49,21 @@ std::vector<std::string> camera_names(const run::Dump& dump) {
 // Writes the pictures of a run, every camera under every name.
 class PictureWriter {
  public:
-  PictureWriter(const FilterOptions& options, const run::Dump& dump, const run::FilterRequest& run)
-      : names_(options.outputs, camera_names(dump)),
-        attributes_(run::attributes_of(kVersion, dump, run.parameters)),
-        cameras_(dump.metadata().cameras),
+  PictureWriter(const FrameRun& of, const run::FilterRequest& run)
+      : names_(of.outputs, camera_names(*of.frame.dump)),
+        attributes_(run::attributes_of(kVersion, *of.frame.dump, run.parameters)),
+        cameras_(of.frame.dump->metadata().cameras),
         first_(run.passes.first) {
-    std::vector<std::string> files = names_.all(run.snapshots);
-    for (const std::string& path : files) film::check_image_path(path);
-    files.push_back(options.common.json);
-    check_files({options.input, options.tuned}, files);
+    for (const auto& [name, text] : run::describe(run.window)) {
+      attributes_.emplace_back("psf:" + name, text);
+    }
+  }
+
+  // The files that all pictures of a run go to.
+  static std::vector<std::string> files_of(const FrameRun& of,
+                                           const std::vector<std::uint64_t>& snapshots) {
+    const film::PictureNames names(of.outputs, camera_names(*of.frame.dump));
+    return names.all(snapshots);
   }
 
   // Writes the pictures of the first `passes` passes and returns their names. `snapshot`: number
@@ -90,24 +95,38 @@ class PictureWriter {
   double seconds_ = 0;
 };
 
-// The whole dump; returns the names of the files.
+// A whole dump or frame; returns the names of the files.
 std::vector<std::string> filter_all(const run::Dump& dump, run::FilterRequest& run,
-                                    PictureWriter& writer, bool quiet, run::FilterResult& outcome) {
+                                    PictureWriter& writer, run::FilterResult& outcome) {
   std::vector<std::string> written;
   const auto append = [&](std::vector<std::string> names) {
     written.insert(written.end(), names.begin(), names.end());
-  };
-  core::Progress progress("filter", quiet);
-  run.on_progress = [&progress](std::uint64_t done, std::uint64_t total) {
-    progress.advance(done, total);
   };
   run.on_snapshot = [&](std::uint64_t passes, std::span<const run::CameraPictures> pictures) {
     append(writer.write(passes, passes, pictures));
   };
   outcome = run::filter_dump(dump, run);
-  progress.finish();
   append(writer.write(0, outcome.passes, outcome.pictures));
   return written;
+}
+
+// Adds the figures of a frame to those of the frames before it; the pictures are those of the last.
+void add(run::FilterResult one, run::FilterResult& all) {
+  if (all.passes == 0) {
+    all = std::move(one);
+    return;
+  }
+  all.statistics += one.statistics;
+  all.passes += one.passes;
+  all.blocks += one.blocks;
+  all.not_finite_in_layers += one.not_finite_in_layers;
+  all.not_finite_coverage += one.not_finite_coverage;
+  all.overflows += one.overflows;
+  all.window += one.window;
+  all.seconds_read += one.seconds_read;
+  all.seconds_film += one.seconds_film;
+  if (one.memory.total() > all.memory.total()) all.memory = one.memory;
+  all.pictures = std::move(one.pictures);
 }
 
 // Whatever is committed, until the dump is closed.
@@ -151,44 +170,98 @@ void wait_for_first_pass(const std::string& path) {
   }
 }
 
-void run(const FilterOptions& options) {
-  const auto start = Clock::now();
-  keep_freed_memory();
-  const core::ThreadLimit threads(options.common.threads);
+// What the command line asks for, but for the frame.
+run::FilterRequest request_of(const FilterOptions& options, const FilterOptions& chosen) {
   run::FilterRequest run;
-  FilterOptions chosen = options;
-  if (!options.tuned.empty()) read_tuned(options.tuned, chosen, chosen.vertex);
   run.parameters = filter::parameters_of(chosen);
   run.parameters.count_refusals = options.refusals;
   run.parameters.validate();
   run.layers = layers_of(options.layers);
   run.max_memory = options.max_memory;
-  run.with_noise = !options.common.json.empty();
-  if (options.follow) wait_for_first_pass(options.input);
-  run::Dump dump = open_dump(options.input, chosen.vertex, options.frame);
-  run.passes =
-      options.frame ? run::passes_of_frame(dump, *options.frame) : parse_passes(options.passes);
-  std::vector<std::string> notes;
+  return run;
+}
+
+// Completes the request for a run over a dump or a frame of it, and checks it.
+void prepare(const FilterOptions& options, const FilterOptions& chosen, const FrameRun& of,
+             run::FilterRequest& run, std::vector<std::string>& notes) {
+  const run::Dump& dump = *of.frame.dump;
+  run.passes = of.frame.passes;
+  run.window = of.window;
   fit_terms(dump, {&run.parameters, 1}, filter::asked_terms(chosen.given), notes);
   check_layers(dump, options.layers, run.layers);
   const std::uint64_t last = run.passes.last.value_or(dump.pass_bounds().size() - 1);
   run.snapshots =
       snapshots_of(options.snapshots, last > run.passes.first ? last - run.passes.first : 0);
   if (!options.follow) run::check(dump, run);
-  PictureWriter writer(options, dump, run);
+}
+
+// Every file that will be written, before any work.
+void check_all_files(const FilterOptions& options, const FrameRuns& runs,
+                     const std::vector<std::uint64_t>& snapshots) {
+  std::vector<std::string> files;
+  for (std::size_t k = 0; k < runs.count(); ++k) {
+    for (std::string& file : PictureWriter::files_of(runs[k], snapshots)) {
+      film::check_image_path(file);
+      files.push_back(std::move(file));
+    }
+  }
+  files.push_back(options.common.json);
+  std::vector<std::string> inputs = runs.inputs();
+  inputs.push_back(options.tuned);
+  check_files(inputs, files);
+}
+
+void run(const FilterOptions& options) {
+  const auto start = Clock::now();
+  keep_freed_memory();
+  const core::ThreadLimit threads(options.common.threads);
+  FilterOptions chosen = options;
+  if (!options.tuned.empty()) read_tuned(options.tuned, chosen, chosen.vertex);
+  const run::FilterRequest asked = request_of(options, chosen);
+  if (options.follow) wait_for_first_pass(options.input);
+  const FrameRuns runs(options, chosen.vertex);
+  FrameRun of = runs[0];
+  run::FilterRequest run = asked;
+  run.with_noise = !options.common.json.empty() && runs.count() == 1;
+  std::vector<std::string> notes;
+  prepare(options, chosen, of, run, notes);
+  check_all_files(options, runs, run.snapshots);
   print_notes(notes, options.common.quiet);
 
   FilterReport report;
   report.input = options.input;
-  report.uuid = dump.reader().uuid();
-  report.vertex = dump.vertex_rule();
+  report.uuid = of.frame.dump->reader().uuid();
+  report.vertex = of.frame.dump->vertex_rule();
   report.parameters = run.parameters;
-  report.cameras = dump.metadata().cameras;
+  report.cameras = of.frame.dump->metadata().cameras;
   report.has_all_layers = options.layers == "all";
+  report.frames = runs.frames();
+  report.window = run.window;
   const bool quiet = options.common.quiet;
-  report.written = options.follow ? filter_growing(dump, run, writer, quiet, report.outcome)
-                                  : filter_all(dump, run, writer, quiet, report.outcome);
-  report.seconds_write = writer.seconds();
+  core::Progress progress("filter", quiet || options.follow);
+  for (std::size_t k = 0; k < runs.count(); ++k) {
+    if (k > 0) {
+      of = runs[k];
+      run = asked;
+      notes.clear();  // those of the first frame
+      prepare(options, chosen, of, run, notes);
+    }
+    PictureWriter writer(of, run);
+    if (options.follow) {
+      run::Dump dump = *of.frame.dump;
+      report.written = filter_growing(dump, run, writer, quiet, report.outcome);
+    } else {
+      run::FilterResult outcome;
+      run.on_progress = [&](std::uint64_t done, std::uint64_t total) {
+        progress.advance(k * total + done, runs.count() * total);
+      };
+      const std::vector<std::string> written = filter_all(*of.frame.dump, run, writer, outcome);
+      report.written.insert(report.written.end(), written.begin(), written.end());
+      add(std::move(outcome), report.outcome);
+    }
+    report.seconds_write += writer.seconds();
+  }
+  progress.finish();
   report.seconds = seconds_since(start);
   report.peak = run::peak_memory();
   print_report(report);

@@ -108,11 +108,47 @@ void add_parameter_options(CLI::App& command, filter::ParameterTexts& options) {
       ->group("Weights");
 }
 
+namespace {
+
+void add_frame_options(CLI::App& command, FilterOptions& options) {
+  command
+      .add_option("--frame", options.frame,
+                  "of a sequence: only this frame; without it all, where -o has #### for a number")
+      ->excludes("--passes")
+      ->excludes("--follow")
+      ->type_name("N");
+  command
+      .add_option("--window", options.window,
+                  "share vertices over K frames, an odd number, the frame itself in their middle")
+      ->excludes("--passes")
+      ->excludes("--follow")
+      ->capture_default_str()
+      ->type_name("K");
+  command
+      .add_option(
+          "--relit", options.relit,
+          fmt::format("with --window: a ball of another frame counts where the means differ "
+                      "by at most T standard errors (default {})",
+                      *filter::WindowTerms().relit))
+      ->type_name("T|off");
+  command
+      .add_option("--positions", options.positions,
+                  "with --window: where other frames are searched, at the places of frame 0, which "
+                  "what moves keeps (default where the dump has rest_position), or of now")
+      ->type_name("rest|world");
+}
+
+}  // namespace
+
 void add_filter_options(CLI::App& command, FilterOptions& options) {
-  command.add_option("IN", options.input, "path-vertex buffer")->required()->type_name("FILE.pvb");
+  command
+      .add_option("IN", options.input,
+                  "path-vertex buffer, or the name of one a frame with #### for the number")
+      ->required()
+      ->type_name("FILE.pvb");
   command
       .add_option("-o,--output", options.outputs,
-                  "picture, .exr with layers or .png; may be repeated")
+                  "picture, .exr with layers or .png, with #### one a frame; may be repeated")
       ->required()
       ->type_name("FILE.exr|.png")
       ->allow_extra_args(false);
@@ -149,10 +185,7 @@ void add_filter_options(CLI::App& command, FilterOptions& options) {
                 "of a dump that is being written: a new picture whenever a pass is committed, "
                 "until it is closed")
       ->excludes("--snapshots");
-  command.add_option("--frame", options.frame, "of a dump of several frames: only this one")
-      ->excludes("--passes")
-      ->excludes("--follow")
-      ->type_name("N");
+  add_frame_options(command, options);
   add_common(command, options.common);
 }
 

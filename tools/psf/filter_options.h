@@ -22,8 +22,10 @@ struct FilterOptions : filter::ParameterTexts {
   std::vector<std::string> outputs;
   std::string passes, snapshots;  // as written; empty: all passes, no snapshots
   std::optional<std::uint32_t> frame;
-  std::string layers = "all";  // layers of EXRs, as written
-  std::string tuned;           // file of psf tune that gives the parameters; empty: none
+  std::uint32_t window = 1;      // frames whose vertices are shared
+  std::string relit, positions;  // as written; empty: the defaults
+  std::string layers = "all";    // layers of EXRs, as written
+  std::string tuned;             // file of psf tune that gives the parameters; empty: none
   bool refusals = false, follow = false;
   std::optional<std::uint64_t> max_memory;  // bytes
 };

@@ -26,7 +26,9 @@ struct FilterReport {
   std::vector<std::string> written;  // names of the files written
   double seconds_write = 0, seconds = 0;
   run::PeakMemory peak;
-  bool has_all_layers = true;  // of the light that the dump has
+  bool has_all_layers = true;         // of the light that the dump has
+  std::vector<std::uint32_t> frames;  // ascending; empty: none was chosen
+  run::Window window;                 // of the first frame
 };
 
 // Names and counts that are not 0, as "a 1, b 2", or `otherwise` where all are 0.
@@ -103,6 +105,22 @@ inline std::string left_out_text(const FilterReport& report) {
                      core::with_commas(report.outcome.overflows), photons);
 }
 
+// Which frames were filtered, and what came from those around them.
+inline std::string frames_text(const FilterReport& report) {
+  std::string text = report.frames.size() == 1
+                         ? std::to_string(report.frames[0])
+                         : fmt::format("{}:{}", report.frames.front(), report.frames.back() + 1);
+  if (report.window.width == 1) return text;
+  for (const auto& [name, value] : run::describe(report.window)) {
+    text += fmt::format(", {} {}", name, value);
+  }
+  const filter::WindowCounts& counts = report.outcome.window;
+  if (counts.found == 0) return text + "; nothing was found in other frames";
+  return text +
+         fmt::format("; {:.1f}% of the balls in other frames count",
+                     100 * static_cast<double>(counts.alike) / static_cast<double>(counts.found));
+}
+
 inline void print_report(const FilterReport& report) {
   const filter::Statistics& s = report.outcome.statistics;
   const filter::Parameters& p = report.parameters;
@@ -114,6 +132,7 @@ inline void print_report(const FilterReport& report) {
                               core::counted(report.outcome.passes, "pass", "passes"),
                               core::counted(report.outcome.blocks, "block", "blocks"),
                               core::counted(report.cameras.size(), "camera", "cameras")));
+  if (!report.frames.empty()) line("frames", frames_text(report));
   const std::string sources = filter::info(p.estimator).is_of_photons
                                   ? core::counted(s.photons, "photon", "photons")
                                   : core::counted(s.sources, "source", "sources");
@@ -218,6 +237,12 @@ inline nlohmann::ordered_json to_json(const FilterReport& report) {
     json["photons_left_out"] = s.photons_left_out;
   }
   if (report.vertex) json["vertex"] = to_text(*report.vertex);
+  if (!report.frames.empty()) json["frames"] = report.frames;
+  if (report.window.width > 1) {
+    for (const auto& [name, value] : run::describe(report.window)) json["window"][name] = value;
+    json["window"]["found"] = report.outcome.window.found;
+    json["window"]["alike"] = report.outcome.window.alike;
+  }
   json["layers"] = report.outcome.pictures.empty() ? std::vector<std::string>()
                                                    : report.outcome.pictures[0].light_layers();
   const bool counted = report.parameters.count_refusals;

@@ -22,6 +22,7 @@ void declare_psf(CLI::App& app) {
   add_cat(app);
   add_export(app);
   add_compare(app);
+  add_flicker(app);
   add_relight(app);
   add_sweep(app);
   add_converge(app);

@@ -10,6 +10,7 @@ void declare_psf(CLI::App& app);  // all of it
 void add_ablate(CLI::App& app);
 void add_cat(CLI::App& app);
 void add_compare(CLI::App& app);
+void add_flicker(CLI::App& app);
 void add_converge(CLI::App& app);
 void add_explain(CLI::App& app);
 void add_export(CLI::App& app);

@@ -22,6 +22,11 @@ inline constexpr std::uint32_t kFewestTested = 64;
 // digits of their variance, so that the order of summation would decide.
 inline constexpr double kAlike = 1.0 / 65536;
 
+// Whether the means of two sets of contributions, which have none in common, are within `agree`
+// standard errors of each other (Welch 1947: each side has its own sample variance). Returns true
+// where the comparison meets NaN.
+[[nodiscard]] bool same_mean(const Moments& a, const Moments& b, double agree);
+
 // `ball` is a part of `larger`. Whether the mean of the rest of `larger` is within `agree` standard
 // errors of the mean of `ball` (Welch 1947: each side has its own sample variance). A single
 // firefly, however bright, has a standard error of its own size, so it makes no ball stop. Returns

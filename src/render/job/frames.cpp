@@ -32,16 +32,6 @@ void add(JobResult frame, JobResult& all) {
 
 }  // namespace
 
-bool is_numbered(const std::string& path) {
-  return path.find(kNumberMark) != std::string::npos;
-}
-
-std::string numbered(std::string path, std::uint32_t frame) {
-  const std::size_t at = path.find(kNumberMark);
-  if (at != std::string::npos) path.replace(at, kNumberMark.size(), fmt::format("{:04}", frame));
-  return path;
-}
-
 void check_frame_names(const Job& job) {
   const bool apart = is_numbered(job.output);
   for (const std::string& image : job.images) {

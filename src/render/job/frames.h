@@ -5,16 +5,14 @@
 #include <string>
 #include <string_view>
 
+#include "core/numbered_name.h"
 #include "render/job/job.h"
 
 namespace psf::render {
 
-// What stands for the number of a frame in the name of a file, four digits or more.
-constexpr std::string_view kNumberMark = "####";
-
-[[nodiscard]] bool is_numbered(const std::string& path);
-// The name with the frame's number.
-[[nodiscard]] std::string numbered(std::string path, std::uint32_t frame);
+using core::is_numbered;
+using core::kNumberMark;
+using core::numbered;
 
 // Throws Error{usage} where frames would share a picture.
 void check_frame_names(const Job& job);
