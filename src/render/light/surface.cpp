@@ -159,6 +159,7 @@ const Relief* Shapes::on_mesh(const MeshView& mesh, const Hit& hit, const Vec3& 
                              : Vec2(hit.u, hit.v);
   s.material = mesh.material;
   s.emitter = mesh.emitter;
+  s.primitive = hit.primitive;
   const std::vector<Vec3>& rest = mesh.mesh->rest;
   s.rest = rest.empty() ? s.position : rest[a] * w + rest[b] * hit.u + rest[c] * hit.v;
   if (mesh.relief == nullptr || mesh.uvs == nullptr) return nullptr;
