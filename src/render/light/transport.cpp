@@ -46,6 +46,8 @@ Transport::Transport(const Scene& scene, const IntegratorSettings& settings)
     if (gloss) coats_[m] = schlick;
     if (metal) metals_[m] = white;
     if (kind != MaterialKind::coat) continue;
+    if (scene.materials[m].clearcoat > 0 && clear_ == nullptr)
+      clear_ = std::make_shared<CoatAlbedo>(Bsdf::kClearIor);
     auto& table = tables[scene.materials[m].ior];
     if (table == nullptr) table = std::make_shared<CoatAlbedo>(scene.materials[m].ior);
     coats_[m] = table;
@@ -72,7 +74,7 @@ Vertex Transport::vertex(const Surface& surface, const Walk& walk) const {
   const Frame frame(surface.normal);
   return {surface,
           Bsdf(scene_.materials[m], scene_, surface.uv, surface.front, coats_[m].get(),
-               metals_[m].get()),
+               metals_[m].get(), clear_.get()),
           frame,
           out,
           frame.to_local(out),
@@ -156,11 +158,12 @@ Rgb Transport::direct_from(std::size_t light, float expected, const Vertex& v, S
 }
 
 bool Transport::select_lobe(Vertex& v, Walk& walk, Sampler& sampler) const {
-  if (v.bsdf.straddles(settings_.vertex_roughness)) {
-    const float glossy = v.bsdf.glossy_probability(v.local);
-    const bool take_glossy = sampler.next_1d() < glossy;
-    v.bsdf.keep(take_glossy ? Bsdf::kGlossy : v.bsdf.enters() ? Bsdf::kInto : Bsdf::kDiffuse);
-    const float counts = 1 / (take_glossy ? glossy : 1 - glossy);
+  const std::uint8_t smooth = v.bsdf.smooth_lobes(settings_.vertex_roughness);
+  if (smooth != 0) {
+    const float chance = v.bsdf.probability(smooth, v.local);
+    const bool take_smooth = sampler.next_1d() < chance;
+    v.bsdf.keep(static_cast<std::uint8_t>(take_smooth ? smooth : v.bsdf.lobes() & ~smooth));
+    const float counts = 1 / (take_smooth ? chance : 1 - chance);
     walk.throughput *= counts;
     if (walk.trail != nullptr) walk.trail->scale(counts);
   }

@@ -157,6 +157,7 @@ class Transport {
   std::vector<std::shared_ptr<const CoatAlbedo>> coats_;  // by material; equal ior share a table
   // By material: null where no light of many bounces between microfacets is kept.
   std::vector<std::shared_ptr<const CoatAlbedo>> metals_;
+  std::shared_ptr<const CoatAlbedo> clear_;  // null where no material has a clear coat
 };
 
 }  // namespace psf::render
