@@ -179,6 +179,7 @@ std::string to_json(const Metadata& metadata) {
                       {"units", metadata.units},
                       {"cameras", std::move(cameras)},
                       {"lights", metadata.lights}};
+  if (!metadata.visibility_rule.empty()) json["visibility_rule"] = metadata.visibility_rule;
   if (!metadata.materials.empty()) json["materials"] = metadata.materials;
   if (metadata.frames) json["frames"] = frames_json(*metadata.frames);
   if (metadata.shade_rate > 1) json["shade_rate"] = metadata.shade_rate;
@@ -209,6 +210,7 @@ Metadata parse_metadata(const std::string& json) {
   read_key(place, "units", out.units);
   read_key(place, "cameras", out.cameras);
   read_key(place, "lights", out.lights);
+  read_key(place, "visibility_rule", out.visibility_rule);
   read_key(place, "materials", out.materials);
   if (const auto found = root.find("frames"); found != root.end()) {
     read_frames({*found, "/frames"}, out.cameras, out.frames.emplace());

@@ -47,6 +47,8 @@ struct Metadata {
   std::string units;                // unit of lengths, "scene" where unknown
   std::vector<CameraInfo> cameras;  // index = value of the channel `camera`
   std::vector<std::string> lights;  // light l owns bit l mod 32 of the channel `visibility`
+  // In words, which lights were tested at x_i; empty: all.
+  std::string visibility_rule;
   // Names; index = value of the channel `material`.
   std::vector<std::string> materials;
   std::optional<FrameInfo> frames;  // where the file has frames

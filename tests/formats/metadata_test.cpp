@@ -46,6 +46,7 @@ TEST_CASE("metadata survives JSON exactly") {
     in.cameras[1].projection[k] = -1e-300 * static_cast<double>(k);
   }
   in.lights = {"sun", "", "lamp"};
+  in.visibility_rule = "of the strong ones";
   in.materials = {"", "caf\xC3\xA9", "wall"};
   const Metadata out = parse_metadata(to_json(in));
   CHECK(out.producer == in.producer);
@@ -63,9 +64,11 @@ TEST_CASE("metadata survives JSON exactly") {
   CHECK(out.units == in.units);
   CHECK(out.cameras == in.cameras);
   CHECK(out.lights == in.lights);
+  CHECK(out.visibility_rule == in.visibility_rule);
   CHECK(out.materials == in.materials);
   // Without names there is no key: files of earlier versions stay the same byte for byte.
   CHECK(to_json(Metadata{}).find("materials") == std::string::npos);
+  CHECK(to_json(Metadata{}).find("visibility_rule") == std::string::npos);
 }
 
 TEST_CASE("the frames of a sequence and their cameras survive JSON, and what is wrong is named") {

@@ -22,7 +22,9 @@ Estimate by_light(const Transport& transport, std::size_t light, const Surface& 
     for (std::uint32_t i = 0; i < kPaths; ++i) {
       Sampler s = sampler(SamplerKind::sobol, b, i);
       LightSample sample;
-      if (!transport.lights().sample(light, from, s.next_2d(), sample)) continue;
+      if (!transport.lights().sample(light, from, {from.position, from.normal}, s.next_2d(),
+                                     sample))
+        continue;
       const float cosine = dot(sample.direction, from.normal);
       if (cosine > 0) sum += double{sample.weight.y * cosine} / kPiD;
     }
@@ -38,7 +40,7 @@ Estimate by_scattering(const Transport& transport, const Surface& from) {
     for (std::uint32_t i = 0; i < kPaths; ++i) {
       Sampler s = sampler(SamplerKind::sobol, b, i);
       Walk walk;
-      walk.from = from.position;
+      walk.from.position = from.position;
       const Vec3 w = Frame(from.normal).to_world(cosine_hemisphere(s.next_2d()));
       walk.ray = {from.origin_toward(w), w};
       Surface hit;

@@ -39,7 +39,7 @@ RenderSettings with_all(std::uint64_t passes) {
 
 Columns columns_of(const Scene& scene, const RenderSettings& settings,
                    const Integrator& integrator) {
-  const TempFolder folder;
+  const tests::TempFolder folder;
   formats::WriterOptions options;
   options.sync = false;
   {
@@ -185,7 +185,7 @@ TEST_CASE("Channels on request leave the others as they are, for any number of t
 }
 
 TEST_CASE("A dump with channels on request goes on as if it had never stopped") {
-  const TempFolder folder;
+  const tests::TempFolder folder;
   const RenderSettings four = with_all(4);
   (void)render_to(folder / "whole.pvb", four);
   (void)render_to(folder / "part.pvb", with_all(2));

@@ -130,6 +130,8 @@ TEST_CASE("a file that was rendered otherwise is refused, named, and left as it 
   names([](RenderSettings& s) { s.integrator.max_depth = 3; }, "max_depth");
   names([](RenderSettings& s) { s.integrator.roulette_depth = 1; }, "roulette_depth");
   names([](RenderSettings& s) { s.integrator.ao_distance = 2; }, "ao_distance");
+  names([](RenderSettings& s) { s.integrator.light_sampling = LightSampling::tree; },
+        "light_sampling");
   names([](RenderSettings& s) { s.shade_rate = 2; }, "shade_rate");
   names([](RenderSettings& s) { s.producer = "psf-render 9"; }, "producer");
   names([](RenderSettings& s) { s.cameras = {1}; }, "cameras");

@@ -19,6 +19,9 @@ void declare_psf_bench(CLI::App& app) {
   add_files(app);
   add_filter(app);
   add_sweep(app);
+#ifdef PSF_WITH_RENDER
+  add_render(app);
+#endif
 }
 
 }  // namespace psf::bench

@@ -11,5 +11,6 @@ void declare_psf_bench(CLI::App& app);  // all of it
 void add_files(CLI::App& app);
 void add_filter(CLI::App& app);
 void add_sweep(CLI::App& app);
+void add_render(CLI::App& app);  // only where the renderer is built
 
 }  // namespace psf::bench

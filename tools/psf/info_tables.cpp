@@ -20,10 +20,18 @@ void print_cameras(const formats::Metadata& metadata) {
 }
 
 void print_lights(const formats::Metadata& metadata) {
+  constexpr std::size_t kShown = 32;
   if (metadata.lights.empty()) return;
   fmt::print("\n  {:<14}{}\n", "light", "visibility bit");
-  for (std::size_t k = 0; k < metadata.lights.size(); ++k) {
+  for (std::size_t k = 0; k < std::min(kShown, metadata.lights.size()); ++k) {
     fmt::print("  {:<14}{}\n", shown_or_dash(metadata.lights[k]), k % 32);
+  }
+  if (metadata.lights.size() > kShown) {
+    fmt::print("  and {} more, light l with bit l mod 32; --json has them\n",
+               metadata.lights.size() - kShown);
+  }
+  if (!metadata.visibility_rule.empty()) {
+    fmt::print("  bits are {}\n", shown_or_dash(metadata.visibility_rule));
   }
 }
 

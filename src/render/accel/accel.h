@@ -26,6 +26,17 @@ struct Hit {
   Vec3 place{0, 0, 0};  // on the ray, with errors that grow with the distance
 };
 
+// A query as it was asked, for who asks it again to measure.
+struct RecordedRay {
+  Vec3 origin;
+  float beyond;
+  Vec3 direction;
+  float reach;
+  float time;
+  bool occlusion;  // whether anything is in the way, not what
+  bool met;
+};
+
 class Accel {
  public:
   // Uses the buffers of the scene, which must outlive this object. Throws Error{limit} where Embree
@@ -43,7 +54,9 @@ class Accel {
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     embree_intersect(scene_.get(), query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    const bool met = query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+    if (log_ != nullptr) log({origin, beyond, direction, reach, time, false, met});
+    if (!met) return false;
     hit = {query.ray.tfar,   query.hit.u,      query.hit.v,
            query.hit.geomID, query.hit.primID, {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z}};
     hit.place = origin + direction * hit.distance;
@@ -59,14 +72,24 @@ class Accel {
     RTCRay ray;
     set_ray(ray, origin, direction, reach, time);
     embree_occluded(scene_.get(), ray);
-    return ray.tfar < 0;
+    const bool met = ray.tfar < 0;
+    if (log_ != nullptr) log({origin, 0, direction, reach, time, true, met});
+    return met;
   }
+
+  // From now on adds every query to `rays`, as long as its capacity lasts; null: to none. While it
+  // does, one thread alone may ask.
+  void record(std::vector<RecordedRay>* rays) const { log_ = rays; }
+  [[nodiscard]] RTCScene embree() const { return scene_.get(); }
 
   // A sphere around all surfaces; radius 1 for a scene without any.
   [[nodiscard]] const Vec3& center() const { return center_; }
   [[nodiscard]] float radius() const { return radius_; }
 
  private:
+  void log(const RecordedRay& ray) const {
+    if (log_->size() < log_->capacity()) log_->push_back(ray);
+  }
   static void set_ray(RTCRay& ray, const Vec3& origin, const Vec3& direction, float reach,
                       float time) {
     ray.org_x = origin.x;
@@ -96,6 +119,7 @@ class Accel {
 
   EmbreeDevice device_;
   EmbreeScene scene_;
+  mutable std::vector<RecordedRay>* log_ = nullptr;
   unsigned first_instance_ = 0;  // Embree's number of instance 0
   std::vector<Point> points_;
   Vec3 center_{0, 0, 0};

@@ -66,6 +66,9 @@ film::Image make_image(const Job& job, const Scene& scene, const Camera& camera,
   if (i.name == "ao" && std::isfinite(i.ao_distance)) {
     add("ao-distance", fmt::format("{}", i.ao_distance));
   }
+  if (i.light_sampling != LightSampling::automatic) {
+    add("light-sampling", i.light_sampling == LightSampling::power ? "power" : "tree");
+  }
   if (i.name == "vpl") {
     add("vpl-paths", fmt::format("{}", i.vpl_paths));
     add("vpl-set", i.vpl_set == VplSet::pass ? "pass" : "pixel");

@@ -125,6 +125,14 @@ void add_transport(std::vector<Option>& table) {
   add("roulette-depth", &Settings::roulette_depth, 0, 65536, "Russian roulette starts here");
   add("vertex-roughness", &Settings::vertex_roughness, 0.0f, 1.0f,
       "the vertex stored is the first at least this rough (diffuse is 1)");
+  table.push_back(choice_option(
+      "light-sampling", kTransport,
+      [](Job & j) -> auto& { return j.settings.integrator.light_sampling; },
+      {{"auto", LightSampling::automatic},
+       {"power", LightSampling::power},
+       {"tree", LightSampling::tree}},
+      "how one light of many is chosen: by power, or by a tree of what each may bring to the "
+      "place; auto: the tree where there are more than 32"));
   add("vpl-paths", &Settings::vpl_paths, std::uint32_t{1}, kMostLightPaths,
       "vpl: light paths of a set");
   table.push_back(choice_option(

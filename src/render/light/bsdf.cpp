@@ -13,7 +13,7 @@ constexpr float kLeastCosine = 1e-7f;
 }  // namespace
 
 Bsdf::Bsdf(const Material& material, const Scene& scene, const Vec2& uv, bool front,
-           const CoatAlbedo* coat, const CoatAlbedo* white)
+           const CoatAlbedo* coat, const CoatAlbedo* white, const CoatAlbedo* clear)
     : reflectance_(material.reflectance), specular_(material.specular) {
   const bool glass = material.kind == MaterialKind::glass;
   if (!front && !material.two_sided && !glass) return;
@@ -76,6 +76,7 @@ Bsdf::Bsdf(const Material& material, const Scene& scene, const Vec2& uv, bool fr
       break;
   }
   if (white != nullptr && metalness_ > 0 && alpha_ >= kLeastAlpha) set_many_bounces(*white);
+  if (clear != nullptr && material.clearcoat > 0) set_clear(material, scene, uv, *clear);
 }
 
 void Bsdf::set_many_bounces(const CoatAlbedo& white) {
@@ -142,7 +143,25 @@ float Bsdf::glossy_probability(const Vec3& o) const {
   return glossy + base > 0 ? std::clamp(glossy / (glossy + base), 0.05f, 0.95f) : 0.5f;
 }
 
+std::uint8_t Bsdf::smooth_lobes(float threshold) const {
+  std::uint8_t smooth = 0;
+  if ((lobes_ & kClear) != 0 && (clear_roughness_ < threshold || clear_alpha_ < kLeastAlpha))
+    smooth |= kClear;
+  if ((lobes_ & kGlossy) != 0 && (roughness_ < threshold || alpha_ < kLeastAlpha))
+    smooth |= kGlossy;
+  return smooth == lobes_ ? 0 : smooth;
+}
+
+float Bsdf::probability(std::uint8_t lobes, const Vec3& o) const {
+  if (!has_clear()) return (lobes & kGlossy) != 0 ? glossy_probability(o) : 0;
+  const float clear = clear_probability(o), glossy = beneath().glossy_probability(o);
+  return ((lobes & kClear) != 0 ? clear : 0) +
+         (1 - clear) *
+             (((lobes & kGlossy) != 0 ? glossy : 0) + ((lobes & kDiffuse) != 0 ? 1 - glossy : 0));
+}
+
 Rgb Bsdf::albedo() const {
+  if (has_clear()) return clear_albedo();
   const bool has_diffuse = (lobes_ & (kDiffuse | kInto)) != 0, has_glossy = (lobes_ & kGlossy) != 0;
   if (has_diffuse == has_glossy) {
     if (!has_diffuse) return reflectance_;
@@ -154,6 +173,7 @@ Rgb Bsdf::albedo() const {
 }
 
 Rgb Bsdf::evaluate(const Vec3& o, const Vec3& i, float& pdf) const {
+  if (has_clear()) return evaluate_clear(o, i, pdf);
   if (lobes_ == kPhase) {
     pdf = phase(mean_cosine_, -i.z);
     return reflectance_ * pdf;
@@ -191,7 +211,9 @@ Rgb Bsdf::diffuse_share(const Vec3& o, const Vec3& i) const {
   if (lobes_ == kDiffuse || (lobes_ & (kBoundary | kPhase)) != 0) return {1, 1, 1};
   if ((lobes_ & kDiffuse) == 0) return {0, 0, 0};
   float pdf;
-  const Rgb all = evaluate(o, i, pdf), part = diffuse(o.z, i.z) * i.z;
+  const Rgb all = evaluate(o, i, pdf);
+  Rgb part = diffuse(o.z, i.z) * i.z;
+  if (has_clear()) part *= through_clear(o.z) * through_clear(i.z);
   Rgb share(0, 0, 0);
   for (int c = 0; c < 3; ++c) {
     if (all[c] > 0) share[c] = std::min(1.0f, part[c] / all[c]);
@@ -200,6 +222,7 @@ Rgb Bsdf::diffuse_share(const Vec3& o, const Vec3& i) const {
 }
 
 bool Bsdf::sample(const Vec3& o, const Vec2& u, float choice, BsdfSample& sample) const {
+  if (has_clear()) return sample_clear(o, u, choice, sample);
   if (lobes_ == kBoundary) return sample_boundary(o, u, choice, sample);
   if (lobes_ == kPhase) {
     // z is where the path came from.

@@ -2,6 +2,8 @@
 // shading normal.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "core/vec.h"
@@ -36,6 +38,9 @@ struct BsdfSample {
 //              gets the light that the coat does not reflect on the way in and out. This replaces
 //              refraction and all interreflection between coat and base, without making the base's
 //              colour deeper. It is reciprocal, and the total albedo is E(o) + rho (1 - E(o)).
+//              Above it may be a clear coat of weight c, GGX with a dielectric's Fresnel of index
+//              1.5: c GGX + coat (1 - c C(o)) (1 - c C(i)), where C is its albedo. What light
+//              bounces between the two is left out.
 //   gloss      GGX with Schlick's Fresnel, over the same base; E is a colour.
 //   mirror     perfect reflection.
 //   glass      perfect reflection and refraction; it refracts with probability 1 - Fresnel.
@@ -49,15 +54,17 @@ struct BsdfSample {
 // GGX with alpha < kLeastAlpha is a perfect mirror.
 class Bsdf {
  public:
-  static constexpr std::uint8_t kDiffuse = 1, kGlossy = 2, kGlass = 4;
+  static constexpr std::uint8_t kDiffuse = 1, kGlossy = 2, kGlass = 4, kClear = 8;
+  static constexpr float kClearIor = 1.5f;
   // Into a body, its boundary seen from inside, and scattering in its medium.
   static constexpr std::uint8_t kInto = 32, kBoundary = 64, kPhase = 128;
 
   // `coat`: for coats the table of the material's ior, for gloss that of Schlick's Fresnel.
   // `white`: CoatAlbedo::white() for metals with multiple scattering, else null. `front`: the camera
-  // is on the front side.
+  // is on the front side. `clear`: for clear coats the table of kClearIor.
   Bsdf(const Material& material, const Scene& scene, const Vec2& uv, bool front,
-       const CoatAlbedo* coat, const CoatAlbedo* white = nullptr);
+       const CoatAlbedo* coat, const CoatAlbedo* white = nullptr,
+       const CoatAlbedo* clear = nullptr);
   // `material`: of the kind subsurface.
   [[nodiscard]] static Bsdf of_boundary(const Material& material);
   // `albedo`: what is scattered.
@@ -66,10 +73,12 @@ class Bsdf {
   [[nodiscard]] bool black() const { return lobes_ == 0; }
   // Whether every lobe is perfect, so that none can be evaluated and light sampling has no use.
   [[nodiscard]] bool perfect() const {
+    if (has_clear()) return roughest() < kLeastAlpha;
     return (lobes_ & (kDiffuse | kInto | kPhase)) == 0 && alpha_ < kLeastAlpha;
   }
   // Whether evaluate() can be anything but 0.
   [[nodiscard]] bool evaluates() const {
+    if (has_clear()) return !perfect();
     return (lobes_ & (kDiffuse | kPhase)) != 0 || ((lobes_ & ~kInto) != 0 && alpha_ >= kLeastAlpha);
   }
   // Whether light goes on in all directions, as in a medium.
@@ -79,24 +88,30 @@ class Bsdf {
   [[nodiscard]] bool enters() const { return (lobes_ & kInto) != 0; }
   // Whether sample() uses its argument `choice`.
   [[nodiscard]] bool chooses() const {
-    return lobes_ == kGlass || has_two() || (lobes_ == kBoundary && eta_ != 1) || many();
+    return lobes_ == kGlass || has_two() || (lobes_ & kClear) != 0 ||
+           (lobes_ == kBoundary && eta_ != 1) || many();
   }
   // Perceptual roughness of the roughest lobe; 1 for diffuse and media, 0 for mirror and glass.
   [[nodiscard]] float roughness() const {
+    if (has_clear()) return std::sqrt(roughest());
     return (lobes_ & (kDiffuse | kInto | kPhase)) != 0 ? 1.0f : roughness_;
   }
   // Perceptual roughness of the smoothest lobe, for which the direction of view matters most.
   [[nodiscard]] float least_roughness() const {
-    return (lobes_ & kGlossy) != 0 ? roughness_ : roughness();
+    const float below = (lobes_ & kGlossy) != 0 ? roughness_ : roughness();
+    return (lobes_ & kClear) != 0 ? std::min(below, clear_roughness_) : below;
   }
-  // Whether there are two lobes and only the diffuse one, or that into a body, has a roughness of at
-  // least `threshold`. A perfect lobe never has.
-  [[nodiscard]] bool straddles(float threshold) const {
-    return has_two() && (roughness_ < threshold || alpha_ < kLeastAlpha);
-  }
-  // The probability of sampling the glossy lobe where there is another one too.
+  // The lobes whose roughness is below `threshold`, and perfect ones, where there are others too;
+  // else none.
+  [[nodiscard]] std::uint8_t smooth_lobes(float threshold) const;
+  [[nodiscard]] bool straddles(float threshold) const { return smooth_lobes(threshold) != 0; }
+  // The probability of sampling one of some lobes.
+  [[nodiscard]] float probability(std::uint8_t lobes, const Vec3& o) const;
+  // The probability of sampling the glossy lobe where there is a diffuse one too, or that into a
+  // body, and no clear coat.
   [[nodiscard]] float glossy_probability(const Vec3& o) const;
-  void keep(std::uint8_t lobe) { lobes_ = lobe; }
+  void keep(std::uint8_t lobes) { lobes_ = lobes; }
+  [[nodiscard]] std::uint8_t lobes() const { return lobes_; }
   // The albedo at normal incidence of the lobes that are kept.
   [[nodiscard]] Rgb albedo() const;
 
@@ -113,6 +128,20 @@ class Bsdf {
   [[nodiscard]] bool has_two() const {
     return lobes_ == (kDiffuse | kGlossy) || lobes_ == (kInto | kGlossy);
   }
+  // The clear coat, and all beneath it: bsdf_clear.cpp.
+  [[nodiscard]] bool has_clear() const { return clear_row_.lower != nullptr; }
+  void set_clear(const Material& material, const Scene& scene, const Vec2& uv,
+                 const CoatAlbedo& table);
+  [[nodiscard]] Bsdf beneath() const;
+  [[nodiscard]] float through_clear(float cosine) const {
+    return 1 - clear_ * clear_row_.at(cosine);
+  }
+  [[nodiscard]] float clear_probability(const Vec3& o) const;
+  [[nodiscard]] float roughest() const;  // alpha of the roughest lobe
+  [[nodiscard]] Rgb clear_albedo() const;
+  [[nodiscard]] Rgb evaluate_clear(const Vec3& o, const Vec3& i, float& pdf) const;
+  [[nodiscard]] bool sample_clear(const Vec3& o, const Vec2& u, float choice,
+                                  BsdfSample& sample) const;
   // The surface of a body, and places in it: bsdf_body.cpp.
   [[nodiscard]] bool sample_into(const Vec3& o, const Vec2& u, float probability,
                                  BsdfSample& sample) const;
@@ -146,6 +175,9 @@ class Bsdf {
   CoatAlbedo::Row edge_{};   // lower == null: no gloss
   CoatAlbedo::Row white_{};  // lower == null: one bounce alone
   Rgb many_{0, 0, 0};        // the constant factor of many_bounces()
+  float clear_ = 0;          // weight of the clear coat
+  float clear_roughness_ = 0, clear_alpha_ = 0;
+  CoatAlbedo::Row clear_row_{};  // lower == null: no clear coat
 };
 
 }  // namespace psf::render

@@ -20,10 +20,13 @@
 //
 //   path    Light sampling and scattering are combined by the power heuristic, with Russian
 //           roulette. At x_i every light is sampled once where there are at most 32 besides the
-//           sky; otherwise, and at all other vertices, one light is sampled, chosen by power. Bit l
-//           mod 32 of `visibility` is set where the sample of light l was unoccluded, or more than
-//           half of it came through blended surfaces; the sky has no bit. A constant sky is found
-//           by scattering alone, an environment map is sampled too.
+//           sky. Where there are more, each that is likely to bring at least an eighth of the light
+//           there is sampled once, and one of the others; by power, only one of all. At all other
+//           vertices one light is sampled. Bit l mod 32 of `visibility` is set where the sample of
+//           light l was unoccluded, or more than half of it came through blended surfaces; the sky
+//           has no bit, and the one of the others has none: who has one is decided by the place
+//           alone. By power, the one of all has one. A constant sky is found by scattering alone,
+//           an environment map is sampled too.
 //   direct  As `path`, but without light reflected between surfaces after x_i: the path ends at the
 //           depth of x_i.
 //   vpl     As `path`, but part of the light reflected between surfaces comes from virtual point
@@ -103,6 +106,13 @@ enum class VplSet : std::uint8_t {
   pixel  // a set of its own for each path
 };
 
+// How one of the lights is chosen where not all of them are sampled.
+enum class LightSampling : std::uint8_t {
+  automatic,  // tree where there are more than 32 besides the sky, else power
+  power,
+  tree  // by what they may bring to the place, and so the triangles of emissive meshes
+};
+
 struct IntegratorSettings {
   std::string name = "path";      // path, direct, vpl, photon, ao
   int max_depth = 16;             // most surface interactions of a path, with the camera segment's
@@ -111,6 +121,7 @@ struct IntegratorSettings {
   std::uint32_t split = 1;        // continuations from x_i, averaged into c_i
   // For ao, in world units: surfaces farther away than this do not occlude.
   float ao_distance = std::numeric_limits<float>::infinity();
+  LightSampling light_sampling = LightSampling::automatic;
   std::uint32_t vpl_paths = 16;  // light paths of a set
   VplSet vpl_set = VplSet::pass;
   // For vpl, in world units: the geometric term is bounded by 1 / vpl_distance^2; 0: by a part of the
@@ -158,6 +169,8 @@ class Integrator {
   [[nodiscard]] virtual const std::vector<LayerInfo>& layers() const = 0;
   // The names of the lights in the order of their numbers; light l has visibility bit l mod 32.
   [[nodiscard]] virtual std::vector<std::string> light_names() const = 0;
+  // In words, which of them are tested at x_i; empty: all.
+  [[nodiscard]] virtual std::string visibility_rule() const { return {}; }
 };
 
 // Builds the acceleration structure (Embree) and the lights. The scene must outlive the integrator.

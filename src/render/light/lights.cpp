@@ -9,7 +9,8 @@ bool Lights::has_extent(std::size_t light) const {
   return light == count() || lights_[light].kind >= Kind::sun;
 }
 
-std::size_t Lights::choose(float u, float& probability) const {
+std::size_t Lights::choose(const Receiver& at, float u, float& probability) const {
+  if (placed_) return placed_->choose(at, u, probability);
   const std::size_t light = choice_.sample(u);
   probability = choice_.probability(light);
   return light;
@@ -24,7 +25,7 @@ Rgb Lights::mean_radiance(const Record& light, const Vec2& uv) {
   return light.opacity.full() ? whole : whole * light.opacity.at(uv);
 }
 
-bool Lights::sample(std::size_t light, const Surface& from, const Vec2& u,
+bool Lights::sample(std::size_t light, const Surface& from, const Receiver& at, const Vec2& u,
                     LightSample& sample) const {
   if (light == count()) {
     sample.direction = sky_.sample(u, sample.pdf);
@@ -48,7 +49,7 @@ bool Lights::sample(std::size_t light, const Surface& from, const Vec2& u,
       sample.weight = r.radiance * (1 / sample.pdf);
       return true;
     case Kind::mesh:
-      return sample_mesh(r, from, u, sample);
+      return sample_mesh(r, from, at, u, sample);
     case Kind::sphere: {
       // On the light itself, rounding must not decide on which side.
       const bool own = from.emitter == static_cast<int>(light);
@@ -90,9 +91,11 @@ Vec2 Lights::texture_point(const Record& light, std::size_t triangle, float b1, 
   return light.mesh->uvs[a] * (1 - b1 - b2) + light.mesh->uvs[b] * b1 + light.mesh->uvs[c] * b2;
 }
 
-bool Lights::sample_mesh(const Record& light, const Surface& from, Vec2 u,
+bool Lights::sample_mesh(const Record& light, const Surface& from, const Receiver& at, Vec2 u,
                          LightSample& sample) const {
-  const std::size_t k = light.areas.sample(u.x);
+  std::size_t k;
+  const float density = choose_triangle(light, at, u.x, k);
+  if (!(density > 0)) return false;
   float stretch = 1;
   const Triangle triangle = light.mesh->motion.empty() ? triangles_[light.first + k]
                                                        : triangle_at(light, k, from.time, stretch);
@@ -106,7 +109,7 @@ bool Lights::sample_mesh(const Record& light, const Surface& from, Vec2 u,
   const float side = cosine > 0 ? 1.0f : -1.0f;
   if (side < 0 && !light.both_sides) return false;
   cosine *= side;
-  sample.pdf = distance_sq * light.extent / (stretch * cosine);
+  sample.pdf = distance_sq * density / (stretch * cosine);
   if (!(cosine > 0) || !std::isfinite(sample.pdf)) return false;
   sample.target = point + triangle.normal * (side * triangle.offset);
   sample.infinite = false;
@@ -154,9 +157,15 @@ float Lights::sphere_pdf(const Record& light, const Vec3& from, bool inside) {
   return cone_pdf(one_minus_cos(std::min(1.0f, sine_sq)));
 }
 
+float Lights::expected(const Arrival& arrival, std::size_t light) const {
+  if (arrival.sampled == Sampled::every) return 1;
+  if (arrival.sampled == Sampled::strong) return placed_->expected(arrival.from, light);
+  return placed_ ? placed_->probability(arrival.from, light) : choice_.probability(light);
+}
+
 float Lights::weight(const Arrival& arrival, std::size_t light, float pdf) const {
   if (!(arrival.pdf > 0)) return 1;
-  const float chosen = arrival.every ? 1.0f : choice_.probability(light);
+  const float chosen = expected(arrival, light);
   return chosen > 0 ? mis_weight(arrival.pdf, pdf * chosen) : 1.0f;
 }
 
@@ -167,11 +176,17 @@ Rgb Lights::emitted(const Arrival& arrival, const Surface& hit) const {
   float pdf = 0;
   if (arrival.pdf > 0) {
     if (r.kind == Kind::sphere) {
-      pdf = r.sphere != nullptr ? sphere_pdf(sphere_at(r, hit.time), arrival.from, !hit.front)
-                                : sphere_pdf(r, arrival.from, !hit.front);
+      const Vec3& from = arrival.from.position;
+      pdf = r.sphere != nullptr ? sphere_pdf(sphere_at(r, hit.time), from, !hit.front)
+                                : sphere_pdf(r, from, !hit.front);
     } else {
       const float cosine = -dot(arrival.direction, hit.geometric_normal);
-      pdf = length_sq(hit.position - arrival.from) * r.extent /
+      const float density = r.tree == kNone
+                                ? r.extent
+                                : area_density(r, hit.primitive,
+                                               trees_[static_cast<std::size_t>(r.tree)].probability(
+                                                   arrival.from, hit.primitive));
+      pdf = length_sq(hit.position - arrival.from.position) * density /
             (hit.stretch * std::max(cosine, 1e-20f));
     }
   }

@@ -3,12 +3,16 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "render/light/distribution.h"
 #include "render/light/environment.h"
+#include "render/light/integrator.h"
+#include "render/light/light_tree.h"
 #include "render/light/opacity.h"
+#include "render/light/placed_choice.h"
 #include "render/light/surface.h"
 
 namespace psf::render {
@@ -37,25 +41,45 @@ struct Emission {
 // angle is a disk in the sky that rays can meet.
 class Lights {
  public:
+  // Where there are at most this many lights, all are sampled at x_i. Light l has the visibility
+  // bit l mod kEveryLight.
+  static constexpr std::size_t kEveryLight = 32;
+
   // Tells `shapes` which surfaces emit. `radius`: that of a sphere around the scene. The scene must
   // outlive this object.
-  Lights(const Scene& scene, Shapes& shapes, float radius);
+  Lights(const Scene& scene, Shapes& shapes, float radius,
+         LightSampling sampling = LightSampling::automatic);
 
   [[nodiscard]] std::size_t count() const { return lights_.size(); }  // without the sky
   [[nodiscard]] bool sky_sampled() const { return sky_.sampled(); }
   [[nodiscard]] bool has_sky() const { return !sky_.black(); }
   [[nodiscard]] std::vector<std::string> names() const;
 
-  // Samples a point on light `light`, or the sky for count(), as seen from `from`. Returns false
-  // where no light from it can arrive there. Lights without extent do not use `u`.
-  [[nodiscard]] bool sample(std::size_t light, const Surface& from, const Vec2& u,
-                            LightSample& sample) const;
+  // Samples a point on light `light`, or the sky for count(), as seen from `from`, which receives
+  // light as `at`. Returns false where no light from it can arrive there. Lights without extent do
+  // not use `u`.
+  [[nodiscard]] bool sample(std::size_t light, const Surface& from, const Receiver& at,
+                            const Vec2& u, LightSample& sample) const;
   [[nodiscard]] bool has_extent(std::size_t light) const;
 
-  // choose() chooses one light, or the sky, by power. choices() is the number of candidates; where
-  // it is 0, choose() must not be called.
+  // choose() chooses one light, or the sky: by power, or where lights are chosen by place by what
+  // they may bring to `at`. choices() is the number of candidates; where it is 0, choose() must not
+  // be called. A probability of 0 says that no light arrives.
   [[nodiscard]] std::size_t choices() const { return choice_.total() > 0 ? choice_.size() : 0; }
-  [[nodiscard]] std::size_t choose(float u, float& probability) const;
+  [[nodiscard]] std::size_t choose(const Receiver& at, float u, float& probability) const;
+
+  // Which lights a vertex samples.
+  enum class Sampled : std::uint8_t {
+    one,     // that of choose()
+    every,   // each once, and the sky
+    strong,  // as PlacedChoice::plan() has it
+  };
+  // Which ones x_i samples.
+  [[nodiscard]] Sampled at_vertex() const {
+    return count() <= kEveryLight ? Sampled::every : placed_ ? Sampled::strong : Sampled::one;
+  }
+  // Only with Sampled::strong.
+  [[nodiscard]] const PlacedChoice& placed() const { return *placed_; }
 
   // Sends light out, from a light or the sky, constant or not, that is chosen by power with `choice`.
   // `where` and `whither` place the ray. The surfaces lie in the sphere around `center`. Returns
@@ -64,12 +88,12 @@ class Lights {
                           const Vec2& whither, Emission& emission) const;
 
   // A ray that scattering sent from `from`. `pdf`: density of `direction` by scattering, 0 for a
-  // perfect lobe and for the camera, with which light sampling does not compete. `every`: whether
-  // `from` sampled every light, or one chosen by power.
+  // perfect lobe and for the camera, with which light sampling does not compete.
   struct Arrival {
-    Vec3 from, direction;
+    Receiver from;
+    Vec3 direction;
     float pdf;
-    bool every;
+    Sampled sampled;  // at `from`
   };
   // Radiance that `hit` emits toward the arrival's origin, weighted against light sampling.
   [[nodiscard]] Rgb emitted(const Arrival& arrival, const Surface& hit) const;
@@ -103,6 +127,7 @@ class Lights {
     const Mesh* mesh = nullptr;
     const Sphere* sphere = nullptr;  // where it moves
     std::size_t first = 0;           // mesh: its first triangle in triangles_
+    int tree = kNone;                // mesh: of its triangles, in trees_
     Distribution areas;              // mesh
   };
   struct Triangle {
@@ -136,13 +161,22 @@ class Lights {
                                    float b2) const;
   // The share of a spot's intensity at this cosine from its axis.
   [[nodiscard]] static float spot_share(const Record& light, float cosine);
-  [[nodiscard]] bool sample_mesh(const Record& light, const Surface& from, Vec2 u,
-                                 LightSample& sample) const;
+  [[nodiscard]] bool sample_mesh(const Record& light, const Surface& from, const Receiver& at,
+                                 Vec2 u, LightSample& sample) const;
+  // Chooses a triangle of a mesh; returns the density of points on it where it stands still.
+  [[nodiscard]] float choose_triangle(const Record& light, const Receiver& at, float& u,
+                                      std::size_t& k) const;
+  [[nodiscard]] float area_density(const Record& light, std::size_t k, float probability) const;
   // `own`: whether `from` lies on the inside of this sphere.
   [[nodiscard]] static bool sample_sphere(const Record& light, const Surface& from, bool own,
                                           const Vec2& u, LightSample& sample);
   [[nodiscard]] static float sphere_pdf(const Record& light, const Vec3& from, bool inside);
+  // How many samples of a light there were on the average where the arrival comes from.
+  [[nodiscard]] float expected(const Arrival& arrival, std::size_t light) const;
   [[nodiscard]] float weight(const Arrival& arrival, std::size_t light, float pdf) const;
+  // Makes the trees; `powers` by light.
+  void place(const std::vector<float>& powers, float radius);
+  [[nodiscard]] LightBounds bounds_of(Record& light, double intensity, float nearest);
   [[nodiscard]] Rgb from_sky(const Arrival& arrival) const;
   [[nodiscard]] Rgb from_sun(const Arrival& arrival, std::size_t sun) const;
 
@@ -153,6 +187,8 @@ class Lights {
   EnvironmentLight sky_;
   Distribution choice_;
   Distribution emission_;  // choice_, and a constant sky
+  std::optional<PlacedChoice> placed_;
+  std::vector<LightTree> trees_;
 };
 
 }  // namespace psf::render

@@ -37,7 +37,8 @@ std::string name_or(const std::string& name, const char* kind, std::size_t index
 
 }  // namespace
 
-Lights::Lights(const Scene& scene, Shapes& shapes, float radius) : sky_(scene) {
+Lights::Lights(const Scene& scene, Shapes& shapes, float radius, LightSampling sampling)
+    : sky_(scene) {
   std::vector<float> powers;
   for (std::size_t l = 0; l < scene.lights.size(); ++l) {
     powers.push_back(add(scene.lights[l], radius));
@@ -59,6 +60,10 @@ Lights::Lights(const Scene& scene, Shapes& shapes, float radius) : sky_(scene) {
   }
   if (sky_.sampled()) powers.push_back(sky_.power() * kPi * radius * radius);
   choice_ = Distribution(powers);
+  const bool many = count() > kEveryLight;
+  if (sampling == LightSampling::tree || (sampling == LightSampling::automatic && many)) {
+    place(powers, radius);
+  }
   if (has_sky() && !sky_.sampled()) powers.push_back(sky_.power() * kPi * radius * radius);
   emission_ = Distribution(powers);
 }

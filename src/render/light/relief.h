@@ -14,6 +14,11 @@ struct Chart {
   // Both are 0 where they do not span the plane.
   [[nodiscard]] static Chart of_triangle(const Vec3& edge1, const Vec3& edge2, const Vec2& uv1,
                                          const Vec2& uv2);
+  // That of a tangent along u and the side of v, as Mesh::tangents has them. Its lengths have no
+  // meaning, which is enough for normal maps.
+  [[nodiscard]] static Chart of_tangent(const Vec3& normal, const Vec3& tangent, float side) {
+    return {tangent, cross(normal, tangent) * side};
+  }
   // That of a sphere, whose texture coordinates are longitude and latitude, at this unit normal.
   [[nodiscard]] static Chart of_sphere(const Vec3& normal, float radius);
 };
@@ -24,6 +29,7 @@ class Relief {
   // The scene must outlive it.
   Relief(const Material& material, const Scene& scene);
 
+  [[nodiscard]] bool has_heights() const { return heights_ != nullptr; }
   [[nodiscard]] bool flat() const { return normals_ == nullptr && heights_ == nullptr; }
   // The normal that the unit `normal`, seen from the front, becomes. Where the chart is 0 it stays.
   // Normals of a picture are those of the specification of glTF 2.0 with v up; heights turn the

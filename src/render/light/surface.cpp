@@ -159,9 +159,17 @@ const Relief* Shapes::on_mesh(const MeshView& mesh, const Hit& hit, const Vec3& 
                              : Vec2(hit.u, hit.v);
   s.material = mesh.material;
   s.emitter = mesh.emitter;
+  s.primitive = hit.primitive;
   const std::vector<Vec3>& rest = mesh.mesh->rest;
   s.rest = rest.empty() ? s.position : rest[a] * w + rest[b] * hit.u + rest[c] * hit.v;
   if (mesh.relief == nullptr || mesh.uvs == nullptr) return nullptr;
+  // Those of a file hold where its mesh stands still; heights need lengths as well.
+  const std::vector<Imath::V4f>& tangents = mesh.mesh->tangents;
+  if (!tangents.empty() && !moves && !mesh.relief->has_heights()) {
+    const Imath::V4f along = tangents[a] * w + tangents[b] * hit.u + tangents[c] * hit.v;
+    chart = Chart::of_tangent(s.normal, {along.x, along.y, along.z}, along.w < 0 ? -1.0f : 1.0f);
+    return mesh.relief;
+  }
   chart =
       Chart::of_triangle(p1 - p0, p2 - p0, mesh.uvs[b] - mesh.uvs[a], mesh.uvs[c] - mesh.uvs[a]);
   return mesh.relief;

@@ -28,7 +28,8 @@ struct Surface {
   float stretch = 1;
   Vec3 rest{0, 0, 0};  // the place of this point at frame 0, as far as the scene keeps it
   bool on_curve = false;
-  int medium = kNone;  // a place in this one of Scene::media instead of a surface
+  std::uint32_t primitive = 0;  // of a mesh: the triangle
+  int medium = kNone;           // a place in this one of Scene::media instead of a surface
 
   // The normal as it is shaded for whoever looks along the unit `direction` at this side: where it
   // would face away, it is bent just into sight.

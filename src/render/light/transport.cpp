@@ -29,7 +29,7 @@ Transport::Transport(const Scene& scene, const IntegratorSettings& settings)
       accel_(scene),
       shapes_(scene),
       caster_(scene, accel_, shapes_),
-      lights_(scene, shapes_, accel_.radius()),
+      lights_(scene, shapes_, accel_.radius(), settings.light_sampling),
       has_volumes_(scene.has_volumes()),
       coats_(scene.materials.size()),
       metals_(scene.materials.size()) {
@@ -46,6 +46,8 @@ Transport::Transport(const Scene& scene, const IntegratorSettings& settings)
     if (gloss) coats_[m] = schlick;
     if (metal) metals_[m] = white;
     if (kind != MaterialKind::coat) continue;
+    if (scene.materials[m].clearcoat > 0 && clear_ == nullptr)
+      clear_ = std::make_shared<CoatAlbedo>(Bsdf::kClearIor);
     auto& table = tables[scene.materials[m].ior];
     if (table == nullptr) table = std::make_shared<CoatAlbedo>(scene.materials[m].ior);
     coats_[m] = table;
@@ -72,7 +74,7 @@ Vertex Transport::vertex(const Surface& surface, const Walk& walk) const {
   const Frame frame(surface.normal);
   return {surface,
           Bsdf(scene_.materials[m], scene_, surface.uv, surface.front, coats_[m].get(),
-               metals_[m].get()),
+               metals_[m].get(), clear_.get()),
           frame,
           out,
           frame.to_local(out),
@@ -81,7 +83,7 @@ Vertex Transport::vertex(const Surface& surface, const Walk& walk) const {
 
 Rgb Transport::met(const Walk& walk, const Surface* surface, Tally& tally) const {
   if (surface != nullptr && surface->emitter == kNone) return {0, 0, 0};
-  const Lights::Arrival arrival{walk.from, walk.ray.direction, walk.pdf, walk.every_light};
+  const Lights::Arrival arrival{walk.from, walk.ray.direction, walk.pdf, walk.sampled};
   if (surface == nullptr) {
     const Rgb sky = lights_.escaped(arrival, [&](std::size_t light, const Rgb& part) {
       tally.add(light, walk.throughput * part);
@@ -96,32 +98,44 @@ Rgb Transport::met(const Walk& walk, const Surface* surface, Tally& tally) const
   return radiance;
 }
 
-Rgb Transport::direct(const Vertex& v, bool every, Sampler& sampler, std::uint32_t& visibility,
-                      std::uint64_t& rays, Tally& tally, const Rgb& throughput) const {
+Rgb Transport::direct(const Vertex& v, Lights::Sampled sampled, Sampler& sampler,
+                      std::uint32_t& visibility, std::uint64_t& rays, Tally& tally,
+                      const Rgb& throughput) const {
   if (v.bsdf.perfect()) return {0, 0, 0};
-  if (!every) {
-    if (lights_.choices() == 0) return {0, 0, 0};
-    float probability;
-    const std::size_t light = lights_.choose(sampler.next_1d(), probability);
-    return direct_from(light, probability, v, sampler, visibility, rays, tally, throughput);
-  }
+  std::uint32_t no_bit = 0;
+  const auto sample = [&](std::size_t light, float expected, std::uint32_t& bits) {
+    return direct_from(light, expected, v, sampler, bits, rays, tally, throughput);
+  };
   Rgb sum(0, 0, 0);
-  for (std::size_t light = 0; light < lights_.count(); ++light) {
-    sum += direct_from(light, 1, v, sampler, visibility, rays, tally, throughput);
+  if (sampled == Lights::Sampled::every) {
+    for (std::size_t light = 0; light < lights_.count(); ++light) {
+      sum += sample(light, 1, visibility);
+    }
+    if (lights_.sky_sampled()) sum += sample(lights_.count(), 1, no_bit);
+    return sum;
   }
-  if (lights_.sky_sampled()) {
-    std::uint32_t no_bit = 0;
-    sum += direct_from(lights_.count(), 1, v, sampler, no_bit, rays, tally, throughput);
+  if (lights_.choices() == 0) return sum;
+  const Receiver at = receiver_of(v);
+  const float u = sampler.next_1d();
+  float probability;
+  if (sampled == Lights::Sampled::one) {
+    const std::size_t light = lights_.choose(at, u, probability);
+    return probability > 0 ? sample(light, probability, visibility) : sum;
   }
+  // The one of the others comes first, so that its numbers are the same ones wherever it is.
+  const PlacedChoice::Plan plan = lights_.placed().plan(at);
+  const std::size_t other = lights_.placed().choose_rest(at, plan, u, probability);
+  if (probability > 0) sum += sample(other, probability, no_bit);
+  for (std::size_t k = 0; k < plan.count; ++k) sum += sample(plan.strong[k], 1, visibility);
   return sum;
 }
 
-Rgb Transport::direct_from(std::size_t light, float probability, const Vertex& v, Sampler& sampler,
+Rgb Transport::direct_from(std::size_t light, float expected, const Vertex& v, Sampler& sampler,
                            std::uint32_t& visibility, std::uint64_t& rays, Tally& tally,
                            const Rgb& throughput) const {
   const Vec2 u = lights_.has_extent(light) ? sampler.next_2d() : Vec2(0, 0);
   LightSample sample;
-  if (!lights_.sample(light, v.surface, u, sample)) return {0, 0, 0};
+  if (!lights_.sample(light, v.surface, receiver_of(v), u, sample)) return {0, 0, 0};
   const Vec3 local = v.frame.to_local(sample.direction);
   const bool in_front = local.z > 0 && dot(sample.direction, v.surface.geometric_normal) > 0;
   if (!in_front && !v.bsdf.everywhere()) return {0, 0, 0};
@@ -131,13 +145,12 @@ Rgb Transport::direct_from(std::size_t light, float probability, const Vertex& v
   if (v.bodies > 0 && !leaves_body(v, sample, origin, left, sampler, rays)) return {0, 0, 0};
   const float seen = shines(origin, sample, v.surface.time, v.media, left, sampler, rays);
   if (!(seen > 0)) return {0, 0, 0};
-  if (seen > kSeen && light < lights_.count()) visibility |= 1u << (light % kEveryLight);
+  if (seen > kSeen && light < lights_.count()) visibility |= 1u << (light % Lights::kEveryLight);
 
   float scatter_pdf;
   const Rgb f = v.bsdf.evaluate(v.local, local, scatter_pdf);
-  const float weight = sample.pdf > 0
-                           ? mis_weight(sample.pdf * probability, scatter_pdf) / probability
-                           : 1 / probability;
+  const float weight =
+      sample.pdf > 0 ? mis_weight(sample.pdf * expected, scatter_pdf) / expected : 1 / expected;
   const Rgb radiance = f * sample.weight * (weight * seen) * left;
   if (tally.wants_diffuse()) tally.set_diffuse(v.bsdf.diffuse_share(v.local, local));
   tally.add(light, throughput * radiance);
@@ -145,11 +158,12 @@ Rgb Transport::direct_from(std::size_t light, float probability, const Vertex& v
 }
 
 bool Transport::select_lobe(Vertex& v, Walk& walk, Sampler& sampler) const {
-  if (v.bsdf.straddles(settings_.vertex_roughness)) {
-    const float glossy = v.bsdf.glossy_probability(v.local);
-    const bool take_glossy = sampler.next_1d() < glossy;
-    v.bsdf.keep(take_glossy ? Bsdf::kGlossy : v.bsdf.enters() ? Bsdf::kInto : Bsdf::kDiffuse);
-    const float counts = 1 / (take_glossy ? glossy : 1 - glossy);
+  const std::uint8_t smooth = v.bsdf.smooth_lobes(settings_.vertex_roughness);
+  if (smooth != 0) {
+    const float chance = v.bsdf.probability(smooth, v.local);
+    const bool take_smooth = sampler.next_1d() < chance;
+    v.bsdf.keep(static_cast<std::uint8_t>(take_smooth ? smooth : v.bsdf.lobes() & ~smooth));
+    const float counts = 1 / (take_smooth ? chance : 1 - chance);
     walk.throughput *= counts;
     if (walk.trail != nullptr) walk.trail->scale(counts);
   }
@@ -183,7 +197,7 @@ bool Transport::go_on(const Vertex& v, const BsdfSample& sample, const Vec3& dir
   // What met nothing on the way is still on that from the last vertex.
   if (!sample.straight) {
     walk.pdf = sample.pdf;
-    walk.from = v.surface.position;
+    walk.from = receiver_of(v);
   }
   const bool inside = sample.inside || v.bodies > 0;
   if (inside && walk.body == kNone) {

@@ -28,6 +28,11 @@ struct Vertex {
   int bodies = 0;  // of the bodies with a medium in which it is, where it is in any
 };
 
+// Where light arrives that a vertex scatters.
+[[nodiscard]] inline Receiver receiver_of(const Vertex& v) {
+  return {v.surface.position, v.bsdf.everywhere() ? Vec3(0, 0, 0) : v.surface.normal};
+}
+
 // What turns f cos for radiance along `v.out`, with light that arrives along `toward`, into that for
 // power that arrives from `v.out` and leaves along `toward`: both are one where the normal is not
 // interpolated (Veach 1997, 5.3).
@@ -42,32 +47,27 @@ struct Vertex {
 struct Walk {
   Ray ray;
   Rgb throughput{1, 1, 1};
-  float eta_scale = 1;       // change of the throughput by glass that is undone on leaving it
-  float pdf = 0;             // density of ray.direction; 0 for perfect lobes and the camera
-  bool every_light = false;  // the last vertex sampled every light
-  Vec3 from{0, 0, 0};        // the last vertex
-  int depth = 0;             // surface interactions so far
-  Trail* trail = nullptr;    // gets the vertices of the path, where they are wanted
-  int body = kNone;          // material of the body in whose medium the walk is
-  int bodies = 0;            // there: how many bodies of that medium overlap
-  Rgb within{1, 1, 1};       // there: throughput since it came in
-  bool passed = false;       // it came through a body
-  Media media;               // between the surfaces
+  float eta_scale = 1;  // change of the throughput by glass that is undone on leaving it
+  float pdf = 0;        // density of ray.direction; 0 for perfect lobes and the camera
+  Lights::Sampled sampled = Lights::Sampled::one;  // at the last vertex
+  Receiver from{{0, 0, 0}};                        // the last vertex
+  int depth = 0;                                   // surface interactions so far
+  Trail* trail = nullptr;  // gets the vertices of the path, where they are wanted
+  int body = kNone;        // material of the body in whose medium the walk is
+  int bodies = 0;          // there: how many bodies of that medium overlap
+  Rgb within{1, 1, 1};     // there: throughput since it came in
+  bool passed = false;     // it came through a body
+  Media media;             // between the surfaces
 };
 
 class Transport {
  public:
-  // Where there are at most this many lights, all are sampled at x_i. Light l has the visibility
-  // bit l mod kEveryLight.
-  static constexpr std::size_t kEveryLight = 32;
-
   Transport(const Scene& scene, const IntegratorSettings& settings);
 
   [[nodiscard]] const IntegratorSettings& settings() const { return settings_; }
   [[nodiscard]] const Accel& accel() const { return accel_; }
   [[nodiscard]] const RayCaster& caster() const { return caster_; }
   [[nodiscard]] const Lights& lights() const { return lights_; }
-  [[nodiscard]] bool samples_every_light() const { return lights_.count() <= kEveryLight; }
 
   // Whether x_i can lie between the surfaces.
   [[nodiscard]] bool has_volumes() const { return has_volumes_; }
@@ -91,12 +91,13 @@ class Transport {
   // the walk's throughput and weighted against light sampling. Adds it to `tally`.
   [[nodiscard]] Rgb met(const Walk& walk, const Surface* surface, Tally& tally) const;
 
-  // The radiance that `v` scatters directly from the lights, weighted against scattering. With
-  // `every` each light is sampled once, else one light chosen by power. Sets the visibility bit of
-  // each sampled light that `v` sees, by more than half through what is blended. Adds `throughput`
-  // times the radiance to `tally`.
-  [[nodiscard]] Rgb direct(const Vertex& v, bool every, Sampler& sampler, std::uint32_t& visibility,
-                           std::uint64_t& rays, Tally& tally, const Rgb& throughput) const;
+  // The radiance that `v` scatters directly from the lights that are `sampled`, weighted against
+  // scattering. Sets the visibility bit of each sampled light that `v` sees, by more than half
+  // through what is blended; not that of the one of the others, with Sampled::strong. Adds
+  // `throughput` times the radiance to `tally`.
+  [[nodiscard]] Rgb direct(const Vertex& v, Lights::Sampled sampled, Sampler& sampler,
+                           std::uint32_t& visibility, std::uint64_t& rays, Tally& tally,
+                           const Rgb& throughput) const;
 
   // Where only one of two lobes is rough enough, keeps one of them at random and divides the
   // throughput by its probability. Returns whether `v` is then rough enough to be x_i.
@@ -141,7 +142,8 @@ class Transport {
                              Rgb& left, Sampler& sampler, std::uint64_t& rays) const;
   // Tells the trail how `v` scatters.
   static void tell(const Vertex& v, const Walk& walk);
-  [[nodiscard]] Rgb direct_from(std::size_t light, float probability, const Vertex& v,
+  // `expected`: how many samples of this light there are on the average.
+  [[nodiscard]] Rgb direct_from(std::size_t light, float expected, const Vertex& v,
                                 Sampler& sampler, std::uint32_t& visibility, std::uint64_t& rays,
                                 Tally& tally, const Rgb& throughput) const;
 
@@ -155,6 +157,7 @@ class Transport {
   std::vector<std::shared_ptr<const CoatAlbedo>> coats_;  // by material; equal ior share a table
   // By material: null where no light of many bounces between microfacets is kept.
   std::vector<std::shared_ptr<const CoatAlbedo>> metals_;
+  std::shared_ptr<const CoatAlbedo> clear_;  // null where no material has a clear coat
 };
 
 }  // namespace psf::render

@@ -3,13 +3,26 @@
 
 namespace psf::render {
 
+std::string VertexIntegrator::visibility_rule() const {
+  switch (lit_->transport.lights().at_vertex()) {
+    case Lights::Sampled::every:
+      break;
+    case Lights::Sampled::one:
+      return "of one light, chosen at random by power";
+    case Lights::Sampled::strong:
+      return "of each light that is likely to bring at least an eighth of the light at x_i, by its "
+             "power, distance and direction alone";
+  }
+  return {};
+}
+
 PathRecord VertexIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool shade,
                                    std::uint64_t& rays, const PathDetails& details) const {
   const Transport& transport = lit_->transport;
   PathRecord record;
   Walk walk;
   walk.ray = camera_ray;
-  walk.from = camera_ray.origin;
+  walk.from.position = camera_ray.origin;
   walk.trail = details.trail;
   walk.media = transport.media();
   Tally seen = Tally::of_camera(lit_->plan, details.layers);
@@ -35,15 +48,16 @@ PathRecord VertexIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool
       }
       // Whom it may be averaged with must be known: the same shadow rays, and nothing else.
       Tally none;
-      static_cast<void>(transport.direct(v, transport.samples_every_light(), sampler,
+      static_cast<void>(transport.direct(v, transport.lights().at_vertex(), sampler,
                                          record.visibility, rays, none, walk.throughput));
       record.hit_distance = std::numeric_limits<float>::quiet_NaN();
       return record;
     }
-    const Rgb direct = transport.direct(v, false, sampler, no_bits, rays, seen, walk.throughput);
+    const Rgb direct =
+        transport.direct(v, Lights::Sampled::one, sampler, no_bits, rays, seen, walk.throughput);
     record.unfiltered += walk.throughput * direct;
     if (walk.trail != nullptr) walk.trail->add_direct(direct);
-    walk.every_light = false;
+    walk.sampled = Lights::Sampled::one;
     if (!transport.scatter(v, walk, sampler) || !transport.survives(walk, sampler)) return record;
   }
 }
@@ -83,15 +97,15 @@ Rgb VertexIntegrator::gather_once(const Vertex&, const Segment&, const Sampler&,
 bool VertexIntegrator::gather_direct(const Vertex& x, int depth, Branch& branch, Walk& walk,
                                      Surface& surface, Rgb& sum) const {
   const Transport& transport = lit_->transport;
-  const bool every = transport.samples_every_light();
-  sum = transport.direct(x, every, branch.sampler, branch.visibility, branch.rays, branch.tally,
+  const Lights::Sampled sampled = transport.lights().at_vertex();
+  sum = transport.direct(x, sampled, branch.sampler, branch.visibility, branch.rays, branch.tally,
                          Rgb(1, 1, 1));
   if (branch.trail != nullptr) branch.trail->add_direct(sum);
   walk.trail = branch.trail;
   walk.media = x.media;
   branch.hit_distance = std::numeric_limits<float>::infinity();
   walk.depth = depth;
-  walk.every_light = every;
+  walk.sampled = sampled;
   if (!transport.scatter(x, walk, branch.sampler)) return false;
   if (branch.tally.wants_diffuse()) {
     branch.tally.set_diffuse(
@@ -115,11 +129,11 @@ bool VertexIntegrator::pass_body(Walk& walk, Branch& branch, Rgb& sum) const {
     walk.passed = true;
     const std::optional<Vertex> v = transport.next_inside(walk, branch.sampler, branch.rays);
     if (!v) return false;
-    const Rgb direct = transport.direct(*v, false, branch.sampler, no_bits, branch.rays,
-                                        branch.tally, walk.throughput);
+    const Rgb direct = transport.direct(*v, Lights::Sampled::one, branch.sampler, no_bits,
+                                        branch.rays, branch.tally, walk.throughput);
     sum += walk.throughput * direct;
     if (walk.trail != nullptr) walk.trail->add_direct(direct);
-    walk.every_light = false;
+    walk.sampled = Lights::Sampled::one;
     if (!transport.scatter(*v, walk, branch.sampler)) return false;
   }
   return true;
@@ -136,12 +150,12 @@ void VertexIntegrator::follow(Vertex v, Walk& walk, Branch& branch, Rgb& sum) co
   std::uint32_t no_bits = 0;
   while (!v.bsdf.black()) {
     if (v.bsdf.evaluates()) {
-      const Rgb direct = transport.direct(v, false, branch.sampler, no_bits, branch.rays,
-                                          branch.tally, walk.throughput);
+      const Rgb direct = transport.direct(v, Lights::Sampled::one, branch.sampler, no_bits,
+                                          branch.rays, branch.tally, walk.throughput);
       sum += walk.throughput * direct;
       if (walk.trail != nullptr) walk.trail->add_direct(direct);
     }
-    walk.every_light = false;
+    walk.sampled = Lights::Sampled::one;
     if (!transport.scatter(v, walk, branch.sampler)) return;
     if (!pass_body(walk, branch, sum)) return;
     if (!transport.survives(walk, branch.sampler)) return;

@@ -27,6 +27,7 @@ class VertexIntegrator : public Integrator {
   const Transport* light_transport() const override { return &lit_->transport; }
   bool has_volumes() const override { return lit_->transport.has_volumes(); }
   std::vector<std::string> light_names() const override { return lit_->transport.lights().names(); }
+  std::string visibility_rule() const override;
 
  protected:
   [[nodiscard]] const std::shared_ptr<const LitScene>& lit() const { return lit_; }

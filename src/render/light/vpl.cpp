@@ -69,7 +69,8 @@ void VplIntegrator::keep(const LightVertex& vertex, Vpls& vpls) const {
   if (vertex.at.bsdf.enters()) return;
   LightVertex vpl = vertex;
   const float threshold = settings().vertex_roughness;
-  if (vpl.at.bsdf.straddles(threshold)) vpl.at.bsdf.keep(Bsdf::kDiffuse);
+  const std::uint8_t smooth = vpl.at.bsdf.smooth_lobes(threshold);
+  if (smooth != 0) vpl.at.bsdf.keep(static_cast<std::uint8_t>(vpl.at.bsdf.lobes() & ~smooth));
   if (vpl.at.bsdf.perfect() || vpl.at.bsdf.roughness() < threshold) return;
   vpl.power *= 1 / static_cast<float>(settings().vpl_paths);
   vpls.push_back(vpl);

@@ -105,6 +105,7 @@ formats::Head make_head(const Scene& scene, const Integrator& integrator,
   }
   if (settings.frames) metadata.frames = frame_info(scene, settings, frames);
   metadata.lights = integrator.light_names();
+  metadata.visibility_rule = integrator.visibility_rule();
   for (const Material& material : scene.materials) metadata.materials.push_back(material.name);
 
   formats::Head head;

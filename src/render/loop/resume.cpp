@@ -20,6 +20,9 @@ Json unlisted_settings(const RenderSettings& settings) {
              {"max_depth", integrator.max_depth},
              {"roulette_depth", integrator.roulette_depth}};
   if (std::isfinite(integrator.ao_distance)) state["ao_distance"] = integrator.ao_distance;
+  if (integrator.light_sampling != LightSampling::automatic) {
+    state["light_sampling"] = integrator.light_sampling == LightSampling::power ? "power" : "tree";
+  }
   if (integrator.vertices > 0) state["vertices"] = integrator.vertices;
   if (integrator.photons > 0) state["photons"] = integrator.photons;
   if (integrator.name == "vpl") {

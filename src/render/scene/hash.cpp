@@ -86,6 +86,13 @@ void add(Digest& digest, const Material& m) {
     digest.add(m.bump_texture);
     digest.add(m.bump_height);
   }
+  if (m.clearcoat > 0) {
+    digest.add(4);
+    digest.add(m.clearcoat);
+    digest.add(m.clearcoat_texture);
+    digest.add(m.clearcoat_roughness);
+    digest.add(m.clearcoat_roughness_texture);
+  }
   if (m.opacity < 1 || m.opacity_texture != kNone) {
     digest.add(m.opacity);
     digest.add(m.opacity_texture);
@@ -119,6 +126,7 @@ void add(Digest& digest, const Mesh& mesh) {
   digest.add_array(mesh.positions);
   digest.add_array(mesh.normals);
   digest.add_array(mesh.uvs);
+  if (!mesh.tangents.empty()) digest.add_array(mesh.tangents);
   digest.add_array(mesh.triangles);
   digest.add(mesh.material);
   for (const MeshStep& step : mesh.motion) {

@@ -41,6 +41,10 @@ struct Material {
   float metalness = 0;
   bool multiple_scattering = true;  // of metals: light that bounces between microfacets is kept
   int roughness_metalness_texture = kNone;  // glTF: G multiplies roughness, B multiplies metalness
+  // Of a coat: the share of it that has a second one of index 1.5 above it, clear, and its
+  // perceptual roughness. The red of the one picture and the green of the other multiply them.
+  float clearcoat = 0, clearcoat_roughness = 0;
+  int clearcoat_texture = kNone, clearcoat_roughness_texture = kNone;
   float ior = 1.5f;
   int interior = kNone;  // index in Scene::media, of subsurface and volume alone
   // The share of the surface that is there: rays pass the rest. The red of the picture multiplies it.
@@ -59,10 +63,11 @@ struct Material {
   int emission_texture = kNone;
 
   // All its pictures.
-  [[nodiscard]] std::array<int*, 6> textures() {
+  [[nodiscard]] std::array<int*, 8> textures() {
     return {&reflectance_texture, &roughness_metalness_texture,
             &opacity_texture,     &normal_texture,
-            &bump_texture,        &emission_texture};
+            &bump_texture,        &emission_texture,
+            &clearcoat_texture,   &clearcoat_roughness_texture};
   }
 };
 
@@ -77,6 +82,9 @@ struct Mesh {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;  // empty, or one unit vector per position
   std::vector<Vec2> uvs;      // empty, or one per position
+  // Of a normal map: x, y, z along u, in any length, and w the side of v: the sign of
+  // (normal x tangent) . v. Empty, or one per position; without them triangles have their own.
+  std::vector<Imath::V4f> tangents;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   int material = 0;
   // Where the mesh moves while the shutter is open: at even steps of Scene::shutter from begin to

@@ -172,6 +172,12 @@ void transform_in(Mesh& mesh, const Imath::Matrix44<T>& m) {
     normal_matrix.multDirMatrix(Imath::Vec3<T>(n), turned);
     n = Vec3(turned.normalized());
   }
+  for (Imath::V4f& t : mesh.tangents) {
+    Imath::Vec3<T> turned;
+    m.multDirMatrix(Imath::Vec3<T>(Vec3(t.x, t.y, t.z)), turned);
+    const Vec3 along(turned.normalized());
+    t = {along.x, along.y, along.z, determinant < 0 ? -t.w : t.w};
+  }
   if (determinant < 0) {
     for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   }
@@ -188,6 +194,7 @@ void transform(Mesh& mesh, const Imath::M44d& m) {
 
 void flip(Mesh& mesh) {
   for (Vec3& n : mesh.normals) n = -n;
+  for (Imath::V4f& t : mesh.tangents) t.w = -t.w;
   for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
 }
 
@@ -196,6 +203,7 @@ void append(Mesh& mesh, const Mesh& part) {
   mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
   mesh.normals.insert(mesh.normals.end(), part.normals.begin(), part.normals.end());
   mesh.uvs.insert(mesh.uvs.end(), part.uvs.begin(), part.uvs.end());
+  mesh.tangents.insert(mesh.tangents.end(), part.tangents.begin(), part.tangents.end());
   mesh.triangles.reserve(mesh.triangles.size() + part.triangles.size());
   for (const auto& t : part.triangles)
     mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});

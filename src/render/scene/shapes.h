@@ -38,7 +38,7 @@ struct Arch {
 // A panel with an elliptic opening cut from its bottom. On its faces uv is (x, y), in scene units.
 [[nodiscard]] Mesh make_arch(const Arch& arch);
 
-// Transforms positions by `m` (row vectors, p * m) and normals by its inverse transposed. Where m
+// Transforms positions and tangents by `m` (row vectors, p * m), normals by its inverse transposed. Where m
 // mirrors, the winding is reversed, so the front stays the front. Throws Error{bad_input} where m
 // has no inverse.
 void transform(Mesh& mesh, const Mat4& m);
@@ -48,7 +48,7 @@ void flip(Mesh& mesh);  // front becomes back
 // A unit normal for each vertex: of the triangles around it, by their areas. A vertex of no triangle
 // needs none, and has that up.
 [[nodiscard]] std::vector<Vec3> smooth_normals(const Mesh& mesh);
-// Adds the triangles of `part`; both have normals, or neither; both have uvs, or neither.
+// Adds the triangles of `part`; both have normals, or neither; so too for uvs and tangents.
 void append(Mesh& mesh, const Mesh& part);
 
 }  // namespace psf::render

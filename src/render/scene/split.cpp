@@ -72,6 +72,10 @@ class Splitter {
     add_middle(mesh_.positions, mesh_.normals, i, j);
     for (MeshStep& step : mesh_.motion) add_middle(step.positions, step.normals, i, j);
     if (!mesh_.rest.empty()) mesh_.rest.push_back(mesh_.rest[i] * 0.5f + mesh_.rest[j] * 0.5f);
+    if (!mesh_.tangents.empty()) {
+      const Imath::V4f &a = mesh_.tangents[i], &b = mesh_.tangents[j];
+      mesh_.tangents.emplace_back(a.x + b.x, a.y + b.y, a.z + b.z, a.w);
+    }
     if (!mesh_.uvs.empty()) mesh_.uvs.push_back((mesh_.uvs[i] + mesh_.uvs[j]) * 0.5f);
     return entry->second;
   }

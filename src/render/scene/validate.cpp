@@ -95,6 +95,8 @@ class Validation {
       }
     }
     unit(material.roughness, "the roughness");
+    unit(material.clearcoat, "the clear coat");
+    unit(material.clearcoat_roughness, "the roughness of the clear coat");
     unit(material.metalness, "the metalness");
     unit(material.opacity, "the opacity");
     if (!(material.ior >= 1 && material.ior <= 10)) {

@@ -58,6 +58,7 @@ struct Reader {
   void metallic_roughness(const JsonCursor& pbr);
   void specular_glossiness(const JsonCursor& extension);
   void dielectric();
+  void clearcoat(const JsonCursor& extension);
   void emission();
   void transmission(const JsonCursor& extension);
   void unlit();
@@ -159,6 +160,31 @@ void Reader::dielectric() {
   }
 }
 
+// What is not a coat after all, as glass and unlit materials, has none above it.
+void Reader::clearcoat(const JsonCursor& extension) {
+  constexpr const char* kName = "KHR_materials_clearcoat";
+  load.check_keys(extension, {"clearcoatFactor", "clearcoatTexture", "clearcoatRoughnessFactor",
+                              "clearcoatRoughnessTexture", "clearcoatNormalTexture"});
+  const float factor = std::min(number(extension, "clearcoatFactor", 0, kUnit), 1.0f);
+  if (factor == 0) return;
+  if (material.kind != MaterialKind::coat)
+    return leave_out(fmt::format("{} on what is no metallic-roughness is left out", kName));
+  material.clearcoat = factor;
+  material.clearcoat_roughness =
+      std::min(number(extension, "clearcoatRoughnessFactor", 0, kUnit), 1.0f);
+  material.clearcoat_texture =
+      texture(extension, "clearcoatTexture", TextureUse::numbers, "clear coat");
+  material.clearcoat_roughness_texture = texture(extension, "clearcoatRoughnessTexture",
+                                                 TextureUse::numbers, "clear coat's roughness");
+  const auto picture = [](const JsonCursor& object, const char* key) {
+    const auto info = object.find(key);
+    return info ? std::optional(info->at("index").whole()) : std::nullopt;
+  };
+  // One shading normal for all that a surface has.
+  if (picture(extension, "clearcoatNormalTexture") != picture(json, "normalTexture"))
+    leave_out("a clear coat has the relief of what is beneath it");
+}
+
 void Reader::emission() {
   material.emission = colour(json, "emissiveFactor", 0, kNonNegative);
   if (const auto extension = find_extension(json, "KHR_materials_emissive_strength")) {
@@ -252,6 +278,7 @@ Material Reader::convert() {
   if (const auto extension = find_extension(json, "KHR_materials_transmission"))
     transmission(*extension);
   if (find_extension(json, "KHR_materials_unlit")) unlit();
+  if (const auto extension = find_extension(json, "KHR_materials_clearcoat")) clearcoat(*extension);
   alpha();
   relief();
   note_others();

@@ -64,6 +64,20 @@ std::vector<Vec3> read_vectors(GltfLoad& load, const JsonCursor& accessor) {
   return vectors;
 }
 
+// Where a normal map asks for them. Without normals glTF knows none.
+void read_tangents(GltfLoad& load, const JsonCursor& primitive, Mesh& mesh) {
+  const auto accessor = primitive.at("attributes").find("TANGENT");
+  const Material& material = load.scene.materials[static_cast<std::size_t>(mesh.material)];
+  if (!accessor || mesh.normals.empty() || mesh.uvs.empty() || material.normal_texture == kNone)
+    return;
+  const auto values = read_floats(load, *accessor, 4);
+  mesh.tangents.reserve(values.size() / 4);
+  for (std::size_t i = 0; i + 3 < values.size(); i += 4)
+    mesh.tangents.emplace_back(values[i], values[i + 1], values[i + 2], values[i + 3]);
+  if (mesh.tangents.size() != mesh.positions.size())
+    accessor->fail("TANGENT and POSITION have different counts");
+}
+
 void note_attributes(GltfLoad& load, const JsonCursor& primitive) {
   const std::string place = primitive.path();
   if (const auto targets = primitive.find("targets"); targets && targets->size() > 0)
@@ -99,6 +113,7 @@ void add_primitive(GltfLoad& load, const JsonCursor& primitive, const std::strin
       normals->fail("NORMAL and POSITION have different counts");
   }
   read_uvs(load, primitive, mesh);
+  read_tangents(load, primitive, mesh);
 
   std::vector<std::uint32_t> indices;
   if (const auto accessor = primitive.find("indices")) {
@@ -131,6 +146,7 @@ void add_primitive(GltfLoad& load, const JsonCursor& primitive, const std::strin
     primitive.fail("node " + name + ": " + error.what());
   }
   mesh.normals.clear();
+  mesh.tangents.clear();
   for (const Imath::M44d& placement : flattening) {
     Mesh copy = mesh;
     for (Vec3& p : copy.positions) p = Vec3(Imath::V3d(p) * placement);
