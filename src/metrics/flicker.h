@@ -5,10 +5,10 @@
 //     error   = mean of e_f^2 over frames, pixels and channels: the mean relMSE
 //     flicker = mean over pixels and channels of  Var_f( e_(f+1) - e_f )                 [flicker]
 //
-// of what is left where the share `trim` of the pixels is left out, for each of the two those where it
-// is largest. Var is a sample's, over one less than the number of changes. An error that stays where it is, as
-// bias does in a still picture, does not flicker; errors of variance V that have nothing to do with
-// those of the frame before have a flicker of 2 V.
+// of what is left where the share `trim` of the pixels is left out, for each of the two those where
+// it is largest. Var is a sample's, over one less than the number of changes. An error that stays
+// where it is, as bias does in a still picture, does not flicker; errors of variance V that have
+// nothing to do with those of the frame before have a flicker of 2 V.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// The frames around a frame, whose vertices count for its picture too: filter/README.md, "Windows of
-// frames".
+// The frames around a frame, whose vertices count for its picture too: filter/README.md, "Windows
+// of frames".
 #pragma once
 
 #include <cstddef>
@@ -43,8 +43,8 @@ class WindowReader {
  public:
   using Select = std::function<ChannelSet(const Dump&)>;
 
-  // `first_path`: of the frame itself. `select`: the channels of a dump. All must outlive it. Throws
-  // what `select` throws, and Error{bad_input} where a dump has other layers of the light.
+  // `first_path`: of the frame itself. `select`: the channels of a dump. All must outlive it.
+  // Throws what `select` throws, and Error{bad_input} where a dump has other layers of the light.
   WindowReader(std::uint64_t first_path, const Window& window, const filter::Parameters& parameters,
                const Select& select);
 

@@ -208,8 +208,8 @@ TEST_CASE("A window gives the same pictures for any number of threads and every 
   CHECK(*brute.find("neighbors.Y") == *images[0].find("neighbors.Y"));
 }
 
-// A floor of 10 x 10 places and a plate of as many, as high as a crumb, which lies at `z` in frame 0
-// and has gone by 4 in each frame after. Colours of the plate are three times the floor's.
+// A floor of 10 x 10 places and a plate of as many, as high as a crumb, which lies at `z` in frame
+// 0 and has gone by 4 in each frame after. Colours of the plate are three times the floor's.
 Frames plate_on_floor(std::size_t count, float z) {
   RecordSet set(200 * count);
   std::vector<Rgb> rest;

@@ -19,17 +19,15 @@
 #include "core/standard_streams.h"
 #include "core/text.h"
 #include "film/image.h"
-#include "film/picture_names.h"
 #include "filter_frames.h"
 #include "filter_options.h"
 #include "filter_report.h"
 #include "formats/write/appender.h"
 #include "notes.h"
-#include "run/attributes.h"
+#include "picture_writer.h"
 #include "run/filter_dump.h"
 #include "tuned.h"
 #include "verbs.h"
-#include "version.h"
 
 namespace psf::tools {
 namespace {
@@ -39,61 +37,6 @@ using core::seconds_since;
 
 constexpr std::chrono::milliseconds kBetweenLooks{200};
 constexpr double kPatience = 5;  // seconds without a writer before it is said
-
-std::vector<std::string> camera_names(const run::Dump& dump) {
-  std::vector<std::string> names;
-  for (const formats::CameraInfo& camera : dump.metadata().cameras) names.push_back(camera.name);
-  return names;
-}
-
-// Writes the pictures of a run, every camera under every name.
-class PictureWriter {
- public:
-  PictureWriter(const FrameRun& of, const run::FilterRequest& run)
-      : names_(of.outputs, camera_names(*of.frame.dump)),
-        attributes_(run::attributes_of(kVersion, *of.frame.dump, run.parameters)),
-        cameras_(of.frame.dump->metadata().cameras),
-        first_(run.passes.first) {
-    for (const auto& [name, text] : run::describe(run.window)) {
-      attributes_.emplace_back("psf:" + name, text);
-    }
-  }
-
-  // The files that all pictures of a run go to.
-  static std::vector<std::string> files_of(const FrameRun& of,
-                                           const std::vector<std::uint64_t>& snapshots) {
-    const film::PictureNames names(of.outputs, camera_names(*of.frame.dump));
-    return names.all(snapshots);
-  }
-
-  // Writes the pictures of the first `passes` passes and returns their names. `snapshot`: number
-  // for the names; 0: the final pictures.
-  std::vector<std::string> write(std::uint64_t snapshot, std::uint64_t passes,
-                                 std::span<const run::CameraPictures> pictures) {
-    const auto start = Clock::now();
-    std::vector<std::string> written;
-    for (std::size_t camera = 0; camera < pictures.size(); ++camera) {
-      film::Image image = pictures[camera].image();
-      image.attributes.insert(image.attributes.begin(), attributes_.begin(), attributes_.end());
-      film::add_picture(image.attributes, cameras_[camera].name, first_, first_ + passes);
-      for (std::size_t output = 0; output < names_.count(); ++output) {
-        core::throw_if_interrupted("not all pictures were written");
-        written.push_back(names_.path(output, camera, snapshot));
-        film::write_image(written.back(), image);
-      }
-    }
-    seconds_ += seconds_since(start);
-    return written;
-  }
-  [[nodiscard]] double seconds() const { return seconds_; }
-
- private:
-  film::PictureNames names_;
-  film::Attributes attributes_;
-  std::vector<formats::CameraInfo> cameras_;
-  std::size_t first_;
-  double seconds_ = 0;
-};
 
 // A whole dump or frame; returns the names of the files.
 std::vector<std::string> filter_all(const run::Dump& dump, run::FilterRequest& run,
@@ -211,57 +154,84 @@ void check_all_files(const FilterOptions& options, const FrameRuns& runs,
   check_files(inputs, files);
 }
 
+// A run over a frame of several; what was interrupted says what there is by then.
+std::vector<std::string> filter_frame(const FrameRun& of, run::FilterRequest& run,
+                                      PictureWriter& writer, run::FilterResult& outcome,
+                                      bool is_first) {
+  try {
+    return filter_all(*of.frame.dump, run, writer, outcome);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::interrupted || is_first) throw;
+    throw Error(ErrorCode::interrupted,
+                fmt::format("interrupted in frame {}: the pictures of the frames before it are "
+                            "written",
+                            of.number.value_or(0)));
+  }
+}
+
+// The runs one after the other, the first of which is prepared; their figures go to the report.
+void filter_runs(const FilterOptions& options, const FilterOptions& chosen, const FrameRuns& runs,
+                 FrameRun of, run::FilterRequest run, FilterReport& report) {
+  core::Progress progress("filter", options.common.quiet);
+  for (std::size_t k = 0; k < runs.count(); ++k) {
+    if (k > 0) {
+      of = runs[k];
+      run = request_of(options, chosen);
+      std::vector<std::string> notes;  // those of the first frame, which are told
+      prepare(options, chosen, of, run, notes);
+    }
+    run.on_progress = [&](std::uint64_t done, std::uint64_t total) {
+      progress.advance(k * total + done, runs.count() * total);
+    };
+    PictureWriter writer(of, run);
+    run::FilterResult outcome;
+    const std::vector<std::string> written = filter_frame(of, run, writer, outcome, k == 0);
+    report.written.insert(report.written.end(), written.begin(), written.end());
+    report.seconds_write += writer.seconds();
+    add(std::move(outcome), report.outcome);
+  }
+  progress.finish();
+}
+
+FilterReport report_of(const FilterOptions& options, const FrameRuns& runs, const FrameRun& first,
+                       const run::FilterRequest& run) {
+  FilterReport report;
+  report.input = options.input;
+  report.uuid = first.frame.dump->reader().uuid();
+  report.vertex = first.frame.dump->vertex_rule();
+  report.parameters = run.parameters;
+  report.cameras = first.frame.dump->metadata().cameras;
+  report.has_all_layers = options.layers == "all";
+  report.frames = runs.frames();
+  report.window = run.window;
+  return report;
+}
+
 void run(const FilterOptions& options) {
   const auto start = Clock::now();
   keep_freed_memory();
   const core::ThreadLimit threads(options.common.threads);
   FilterOptions chosen = options;
   if (!options.tuned.empty()) read_tuned(options.tuned, chosen, chosen.vertex);
-  const run::FilterRequest asked = request_of(options, chosen);
+  run::FilterRequest run = request_of(options, chosen);
   if (options.follow) wait_for_first_pass(options.input);
   const FrameRuns runs(options, chosen.vertex);
-  FrameRun of = runs[0];
-  run::FilterRequest run = asked;
+  const FrameRun first = runs[0];
   run.with_noise = !options.common.json.empty() && runs.count() == 1;
   std::vector<std::string> notes;
-  prepare(options, chosen, of, run, notes);
+  prepare(options, chosen, first, run, notes);
   check_all_files(options, runs, run.snapshots);
   print_notes(notes, options.common.quiet);
 
-  FilterReport report;
-  report.input = options.input;
-  report.uuid = of.frame.dump->reader().uuid();
-  report.vertex = of.frame.dump->vertex_rule();
-  report.parameters = run.parameters;
-  report.cameras = of.frame.dump->metadata().cameras;
-  report.has_all_layers = options.layers == "all";
-  report.frames = runs.frames();
-  report.window = run.window;
-  const bool quiet = options.common.quiet;
-  core::Progress progress("filter", quiet || options.follow);
-  for (std::size_t k = 0; k < runs.count(); ++k) {
-    if (k > 0) {
-      of = runs[k];
-      run = asked;
-      notes.clear();  // those of the first frame
-      prepare(options, chosen, of, run, notes);
-    }
-    PictureWriter writer(of, run);
-    if (options.follow) {
-      run::Dump dump = *of.frame.dump;
-      report.written = filter_growing(dump, run, writer, quiet, report.outcome);
-    } else {
-      run::FilterResult outcome;
-      run.on_progress = [&](std::uint64_t done, std::uint64_t total) {
-        progress.advance(k * total + done, runs.count() * total);
-      };
-      const std::vector<std::string> written = filter_all(*of.frame.dump, run, writer, outcome);
-      report.written.insert(report.written.end(), written.begin(), written.end());
-      add(std::move(outcome), report.outcome);
-    }
-    report.seconds_write += writer.seconds();
+  FilterReport report = report_of(options, runs, first, run);
+  if (options.follow) {
+    run::Dump dump = *first.frame.dump;
+    PictureWriter writer(first, run);
+    report.written = filter_growing(dump, run, writer, options.common.quiet, report.outcome);
+    report.seconds_write = writer.seconds();
+  } else {
+    filter_runs(options, chosen, runs, first, run, report);
   }
-  progress.finish();
   report.seconds = seconds_since(start);
   report.peak = run::peak_memory();
   print_report(report);
