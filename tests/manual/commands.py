@@ -18,5 +18,5 @@ def commands(build):
         for command in [program] + [f"{program} {verb}" for verb in verbs]:
             names = re.findall(r"^  (--?[a-z0-9][^ ]*)", help_of(build, command), re.MULTILINE)
             found[command] = [name for both in names for name in both.split(",")]
-    assert len(found) == 20 and sum(map(len, found.values())) > 250
+    assert len(found) == 22 and sum(map(len, found.values())) > 350
     return found

@@ -191,9 +191,13 @@ void JsonCursor::read_numbers(std::span<double> out, const Range& range) const {
 }
 
 Vec2 JsonCursor::vec2(const Range& range) const {
+  return Vec2(vec2d(range));
+}
+
+Imath::V2d JsonCursor::vec2d(const Range& range) const {
   std::array<double, 2> v{};
   read_numbers(v, range);
-  return {static_cast<float>(v[0]), static_cast<float>(v[1])};
+  return {v[0], v[1]};
 }
 
 Vec3 JsonCursor::vec3(const Range& range) const {

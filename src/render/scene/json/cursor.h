@@ -61,6 +61,7 @@ class JsonCursor {
   // The index in `known` of the text, which must be one of them.
   [[nodiscard]] std::size_t choice(std::span<const std::string_view> known) const;
   [[nodiscard]] Vec2 vec2(const Range& range = kAnyNumber) const;
+  [[nodiscard]] Imath::V2d vec2d(const Range& range = kAnyNumber) const;
   [[nodiscard]] Vec3 vec3(const Range& range = kAnyNumber) const;
   [[nodiscard]] Imath::V3d vec3d(const Range& range = kAnyNumber) const;
   [[nodiscard]] double real(const Range& range = kAnyNumber) const;

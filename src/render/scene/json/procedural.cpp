@@ -154,14 +154,14 @@ std::vector<Placement> read_scatter(const JsonCursor& json) {
   Scatter how;
   how.seed = read_seed(json);
   how.count = json.at("count").integer(1, kMaxCopies);
-  const Vec2 area = json.at("area").vec2(kNonNegative);
-  how.width = double{area.x};
-  how.depth = double{area.y};
+  const Imath::V2d area = json.at("area").vec2d(kNonNegative);
+  how.width = area.x;
+  how.depth = area.y;
   if (const auto scale = json.find("scale")) {
-    const Vec2 range = scale->vec2(kPositive);
+    const Imath::V2d range = scale->vec2d(kPositive);
     if (range.x > range.y) scale->expected("the smallest scale and the largest");
-    how.least = double{range.x};
-    how.most = double{range.y};
+    how.least = range.x;
+    how.most = range.y;
   }
   return scatter(how);
 }
