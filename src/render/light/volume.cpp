@@ -82,6 +82,7 @@ float Transport::arrive(Walk& walk, Surface& surface, Sampler& sampler, std::uin
     } else {
       Rgb weight;
       const Medium& in = scene_.media[static_cast<std::size_t>(medium)];
+      // Of many lights the one that is chosen is seldom the one that matters.
       const bool by_light = in.density == nullptr && lights_.count() <= Lights::kEveryLight &&
                             std::any_of(scene_.lights.begin(), scene_.lights.end(), has_place);
       flight = by_light ? fly_by_light(in, scene_.lights, walk.ray, walk.throughput, sampler,
