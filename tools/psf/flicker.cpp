@@ -197,7 +197,10 @@ void write_sheets(const FlickerOptions& options, const FrameSpan& span,
                           row.measured.flicker(options.share)));
   }
   add(reference);
-  for (const std::string& path : options.sheets) sheet.write(path);
+  const std::vector<std::uint8_t> bytes = sheet.png();
+  for (const std::string& path : options.sheets) {
+    core::write_text_file(path, std::string(bytes.begin(), bytes.end()));
+  }
 }
 
 nlohmann::ordered_json to_json(const FlickerOptions& options, const FrameSpan& span,
