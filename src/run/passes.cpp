@@ -22,7 +22,7 @@ std::size_t last_pass(const Dump& dump, const PassSelection& selection) {
         ErrorCode::usage,
         fmt::format(
             "{}: has the frames {}:{}, and passes {}:{} are of several, which would be mixed; "
-            "choose one by --frame, or {} passes from 0, {}, ... on by --passes",
+            "choose one by --passes, {} from 0, {}, ... on, or psf filter's --frame",
             dump.reader().path(), frames->first, frames->first + std::uint64_t{frames->count},
             selection.first, last, frames->passes, frames->passes));
   }

@@ -33,7 +33,7 @@ TEST_CASE("psf filter takes one frame of a sequence and refuses to mix them") {
   CHECK(
       mixed.err.find(
           "has the frames 3:6, and passes 0:6 are of several, which would be mixed; choose one by "
-          "--frame") != std::string::npos);
+          "--passes, 2 from 0, 2, ... on, or psf filter's --frame") != std::string::npos);
   CHECK(psf::tests::run("psf filter " + all + " --passes 1:3 -o " + (folder / "mixed.png")).code ==
         2);
 
