@@ -60,14 +60,8 @@ std::vector<std::uint8_t> encode_png_bytes(std::size_t width, std::size_t height
 
 void write_png_bytes(const std::string& path, std::size_t width, std::size_t height,
                      std::span<const std::uint8_t> bytes) {
-  assert(bytes.size() == 3 * width * height);
-  core::OutputFile file(path);
-  png_image picture = described(width, height);
-  if (png_image_write_to_file(&picture, file.temporary_path().c_str(), 0, bytes.data(), 0,
-                              nullptr) == 0) {
-    throw Error(ErrorCode::io, path + ": cannot write the picture: " + picture.message);
-  }
-  file.commit();
+  const std::vector<std::uint8_t> file = encode_png_bytes(width, height, bytes);
+  core::write_text_file(path, std::string(file.begin(), file.end()));
 }
 
 }  // namespace psf::film

@@ -197,10 +197,7 @@ void write_sheets(const FlickerOptions& options, const FrameSpan& span,
                           row.measured.flicker(options.share)));
   }
   add(reference);
-  const std::vector<std::uint8_t> bytes = sheet.png();
-  for (const std::string& path : options.sheets) {
-    core::write_text_file(path, std::string(bytes.begin(), bytes.end()));
-  }
+  for (const std::string& path : options.sheets) sheet.write(path);
 }
 
 nlohmann::ordered_json to_json(const FlickerOptions& options, const FrameSpan& span,
