@@ -19,7 +19,6 @@
 #include "core/interrupt.h"
 #include "core/json_text.h"
 #include "core/numbered_name.h"
-#include "core/output_file.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/text.h"
