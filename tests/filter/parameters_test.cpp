@@ -36,7 +36,6 @@ TEST_CASE("A radius is read with its basis and written back") {
     CHECK(again.r0 == r0);
     CHECK(again.basis == basis);
   }
-  Radius radius;
   for (const char* text : {"", "px", "8 px", "8pix", "-1", "nan", "0.02x", "wu", "0x2"}) {
     INFO(text);
     CHECK_THROWS_AS(with("r0", text), Error);
