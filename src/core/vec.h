@@ -25,6 +25,16 @@ using Mat4 = Imath::M44f;
   return dot(v, v);
 }
 
+// Two unit vectors, orthogonal to the unit vector n and to each other. Duff et al. 2017, "Building an
+// Orthonormal Basis, Revisited".
+inline void complete_basis(const Vec3& n, Vec3& s, Vec3& t) {
+  const float sign = std::copysign(1.0f, n.z);
+  const float a = -1 / (sign + n.z);
+  const float b = n.x * n.y * a;
+  s = Vec3(1 + sign * n.x * n.x * a, sign * b, -sign * n.x);
+  t = Vec3(b, sign + n.y * n.y * a, -n.y);
+}
+
 [[nodiscard]] inline float luminance(const Rgb& c) {
   return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
 }

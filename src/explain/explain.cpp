@@ -188,6 +188,9 @@ void check(const run::Dump& dump, const ExplainRequest& request) {
     refuse(fmt::format("`estimator`: only those that average over a ball can be explained: {}",
                        fmt::join(names, ", ")));
   }
+  if (request.parameters.fit != filter::BallFit::mean) {
+    refuse("`fit`: only means can be explained, source by source; give `fit mean`");
+  }
   const std::uint64_t last = dump.pass_bounds()[run::last_pass(dump, request.passes)];
   const std::uint64_t first = dump.pass_bounds()[request.passes.first];
   if (request.path) {

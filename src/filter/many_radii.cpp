@@ -49,7 +49,8 @@ struct Scales {
 
 bool can_share(const Parameters& parameters) {
   return parameters.iterations == 1 && parameters.engine == EngineKind::flann &&
-         !parameters.count_refusals && info(parameters.estimator).shares_traversal;
+         !parameters.count_refusals && parameters.fit == BallFit::mean &&
+         info(parameters.estimator).shares_traversal;
 }
 
 class Many {

@@ -45,6 +45,7 @@ std::uint64_t memory_per_record(const Parameters& parameters) {
   const EstimatorInfo& estimator = info(parameters.estimator);
   std::uint64_t bytes = kResult + kLists + kRadius + estimator.bytes;
   if (parameters.demodulate || parameters.iterations > 1) bytes += kVector;  // values to average
+  if (parameters.fit == BallFit::linear) bytes += kVector + 2 * kWord;       // normals, luminances
   if (!estimator.has_tree) return bytes;
   return bytes + tree_bytes(kVector + compared(parameters));  // with positions
 }

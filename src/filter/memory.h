@@ -17,10 +17,10 @@ namespace psf::filter {
 // frame itself, and a pair of frames as one set.
 [[nodiscard]] std::uint64_t memory_per_record_of_window(const Parameters& parameters,
                                                         std::uint64_t layers);
-// The most that a layer with contributions adds to it.
 // Bytes per record in addition where vertices in volumes are filtered apart: the results of the
 // others wait beside that run. `layers`: number of layers that are averaged.
 [[nodiscard]] std::uint64_t memory_per_record_of_kinds(std::uint64_t layers);
+// The most that a layer with contributions adds to memory_per_record().
 [[nodiscard]] std::uint64_t memory_per_layer(const Parameters& parameters);
 
 }  // namespace psf::filter

@@ -1,9 +1,12 @@
 #include "filter/plain.h"
 
+#include <array>
+#include <optional>
 #include <vector>
 
 #include "core/interrupt.h"
 #include "core/parallel.h"
+#include "filter/fit.h"
 #include "filter/orphans.h"
 #include "filter/sum.h"
 #include "search/compact_order.h"
@@ -45,6 +48,10 @@ class Worker {
       average_adopted(adopt(search_, p_, i), i, all_, counts);
       return 0;
     }
+    if (p_.fit == BallFit::linear && count > 1) {
+      fit(i);
+      return count;
+    }
     const bool disk = !p_.area.empty();
     for (const auto& [values, out] : all_) {
       Sum sum;
@@ -57,6 +64,31 @@ class Worker {
   Statistics counts;
 
  private:
+  // [fit] over averaged_, from its equations.
+  void fit(std::uint32_t i) {
+    const FitAxes axes = fit_axes(p_.records, i, p_.radius[i]);
+    const std::span<const Vec3> x = p_.records.position, y = facing(p_.records);
+    FitMoments moments;
+    features_.clear();
+    for (const std::uint32_t j : averaged_) {
+      const auto& f = features_.emplace_back(std::array<double, kFeatures>{
+          double{dot(x[j] - x[i], axes.place[0])}, double{dot(x[j] - x[i], axes.place[1])},
+          double{dot(y[j] - y[i], axes.facing[0])}, double{dot(y[j] - y[i], axes.facing[1])}});
+      moments.add(f, double{luminance(all_[0].values[j])});
+    }
+    const Fit fit = fit_of(moments);
+    std::optional<FitShares> shares;
+    for (const auto& [values, out] : all_) {
+      Sum mean, beside;
+      for (std::size_t k = 0; k < averaged_.size(); ++k) {
+        mean.add(values[averaged_[k]], 1 / moments.count);
+        beside.add(values[averaged_[k]], fit.weight(features_[k]));
+      }
+      if (!shares) shares.emplace(mean, beside);
+      out[i] = shares->taken(mean, beside);
+    }
+  }
+
   [[nodiscard]] bool passes(std::uint32_t i, std::uint32_t j, float r_i) {
     if (!count_refusals_) return p_.weights.pass(i, j, r_i);
     ++counts.candidates;
@@ -70,7 +102,8 @@ class Worker {
   std::span<const Averaged> all_;
   bool count_refusals_;
   std::vector<search::Neighbor> found_;
-  std::vector<std::uint32_t> averaged_;  // record numbers
+  std::vector<std::uint32_t> averaged_;                  // record numbers
+  std::vector<std::array<double, kFeatures>> features_;  // of averaged_
 };
 
 class PlainEngine final : public Engine {

@@ -23,6 +23,7 @@ struct Problem {
   std::span<const float> area;  // A_j of [disk]; empty: [average]
   // The sources are no queries, and a query without one in its ball gets 0: there are no orphans.
   bool sources_apart = false;
+  BallFit fit = BallFit::mean;
 };
 
 // What is averaged, and where the averages go, both by record number.

@@ -15,6 +15,11 @@ struct Sum {
     y += weight * double{v.y};
     z += weight * double{v.z};
   }
+  void add(const Sum& other, double weight) {
+    x += weight * other.x;
+    y += weight * other.y;
+    z += weight * other.z;
+  }
   [[nodiscard]] Rgb over(double divisor) const {
     return {static_cast<float>(x / divisor), static_cast<float>(y / divisor),
             static_cast<float>(z / divisor)};

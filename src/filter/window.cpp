@@ -93,6 +93,11 @@ void WindowTerms::validate_with(const Parameters& parameters) const {
     throw Error(ErrorCode::usage,
                 "`window`: only `estimator average` takes in other frames; leave out the window");
   }
+  if (parameters.fit != BallFit::mean) {
+    throw Error(ErrorCode::usage,
+                "`fit`: what other frames bring is added to a mean; give `fit mean`, or leave out "
+                "the window");
+  }
   if (parameters.iterations != 1) {
     throw Error(ErrorCode::usage,
                 "`iterations`: what other frames bring cannot be averaged again; give 1");

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "core/error.h"
 #include "core/unfinished.h"
 #include "run/dump.h"
 
@@ -75,6 +76,9 @@ ConvergeReport check_analytic(
   double largest = 0;
   std::vector<filter::Parameters> fitting(sets.begin(), sets.end());
   for (filter::Parameters& set : fitting) {
+    if (set.fit != filter::BallFit::mean) {
+      throw Error(ErrorCode::usage, "`fit`: the theory is that of means; give `fit mean`");
+    }
     set.block = {filter::BlockSize::Kind::passes, 2, 16, 1};
     set.weights = filter::WeightTerms::none();
     set.radius.basis = filter::RadiusBasis::footprint;

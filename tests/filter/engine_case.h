@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -12,6 +13,9 @@
 #include "record_set.h"
 
 namespace psf::tests {
+
+inline constexpr std::array kEngines = {filter::EngineKind::flann, filter::EngineKind::plain,
+                                        filter::EngineKind::brute};
 
 struct EngineCase {
   RecordSet set;

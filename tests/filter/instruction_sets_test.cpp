@@ -48,6 +48,13 @@ std::vector<EngineCase> cases() {
   repeated.parameters.demodulate = true;
   repeated.parameters.sources = 3;
   all.push_back(repeated);
+  for (const unsigned terms : {0u, 7u, 255u}) {
+    for (const float r : {0.08f, 0.5f}) {
+      EngineCase fit = noisy_case(3000, terms, r);
+      fit.parameters.fit = filter::BallFit::linear;
+      all.push_back(fit);
+    }
+  }
   EngineCase disk = noisy_case(3000, 1, 0.2f);
   disk.parameters.estimator = filter::Estimator::disk;
   all.push_back(disk);

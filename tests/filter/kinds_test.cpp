@@ -21,11 +21,11 @@ using filter::EngineKind;
 using filter::Estimates;
 using filter::Estimator;
 using tests::EngineCase;
+using tests::kEngines;
 using tests::RecordSet;
 
 constexpr float kRadius = 0.2f;
 const std::vector<filter::CameraView> kKindsCamera = {{16, 10, 0.04}};
-constexpr std::array kEngines = {EngineKind::plain, EngineKind::brute, EngineKind::flann};
 
 // Records of which a third is in volumes. There normals are 0 or not finite, and so are directions
 // and roughnesses.

@@ -6,6 +6,7 @@
 
 #include "catch.h"
 #include "core/parallel.h"
+#include "engine_case.h"
 #include "estimator_case.h"
 #include "filter/estimate.h"
 #include "filter/radius.h"
@@ -15,6 +16,7 @@ namespace {
 
 using filter::Estimates;
 using filter::Estimator;
+using tests::kEngines;
 using tests::RecordSet;
 
 // Contributions cut into three parts, one of them black for most records, beside the whole.
@@ -61,9 +63,6 @@ filter::Parameters parameters_of(Estimator estimator, filter::EngineKind engine,
   parameters.iterations = iterations;
   return parameters;
 }
-
-constexpr filter::EngineKind kEngines[] = {filter::EngineKind::flann, filter::EngineKind::plain,
-                                           filter::EngineKind::brute};
 
 TEST_CASE("A layer is what the filter makes of it alone, bit for bit, and the whole stays") {
   std::size_t orphans = 0;

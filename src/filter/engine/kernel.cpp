@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "filter/engine/count-inl.h"
+#include "filter/engine/fit-inl.h"
 #include "filter/engine/found-inl.h"
 #include "filter/engine/rings-inl.h"
 #include "filter/engine/walk-inl.h"
@@ -66,6 +67,19 @@ void add_found_on(std::span<const TreeSums> sums, const Found& found, double* ou
   }
 }
 
+void find_moments_on(const Tree& tree, const FitSources& sources, const Found& found,
+                     const Packet& packet, FitPacket& fit) {
+  moments_of_found(tree, sources, found, packet, fit);
+}
+
+void add_by_weight_on(const Tree& tree, const FitSources& sources, std::span<const TreeSums> sums,
+                      const Found& found, const Packet& packet, const FitPacket& fit, double* out) {
+  for (const TreeSums& values : sums) {
+    add_weighted(tree, sources, values, found, packet, fit, out);
+    out += 3 * kWidth;
+  }
+}
+
 void average_sums_on(const Packet& packet, std::span<const double> sums, float* means) {
   means_of_sums(packet, sums, means);
 }
@@ -95,6 +109,8 @@ HWY_EXPORT(extremes_on);
 HWY_EXPORT(add_sources_on);
 HWY_EXPORT(find_sources_on);
 HWY_EXPORT(add_found_on);
+HWY_EXPORT(find_moments_on);
+HWY_EXPORT(add_by_weight_on);
 HWY_EXPORT(average_sums_on);
 HWY_EXPORT(add_to_rings_on);
 HWY_EXPORT(average_balls_on);
@@ -114,6 +130,14 @@ void find_sources(const Tree& tree, const WeightTerms& terms,
 }
 void add_found(std::span<const TreeSums> sums, const Found& found, double* out) {
   HWY_DYNAMIC_DISPATCH(add_found_on)(sums, found, out);
+}
+void find_moments(const Tree& tree, const FitSources& sources, const Found& found,
+                  const Packet& packet, FitPacket& fit) {
+  HWY_DYNAMIC_DISPATCH(find_moments_on)(tree, sources, found, packet, fit);
+}
+void add_by_weight(const Tree& tree, const FitSources& sources, std::span<const TreeSums> sums,
+                   const Found& found, const Packet& packet, const FitPacket& fit, double* out) {
+  HWY_DYNAMIC_DISPATCH(add_by_weight_on)(tree, sources, sums, found, packet, fit, out);
 }
 void average_sums(const Packet& packet, std::span<const double> sums, float* means) {
   HWY_DYNAMIC_DISPATCH(average_sums_on)(packet, sums, means);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "filter/engine/fit_packet.h"
 #include "filter/engine/found.h"
 #include "filter/engine/tree.h"
 #include "filter/engine/tree_sums.h"
@@ -84,6 +85,13 @@ void add_sources(const Tree& tree, const TreeSums& sums, const WeightTerms& term
 void find_sources(const Tree& tree, const WeightTerms& terms,
                   std::span<const std::uint32_t> parents, Packet& packet, Found& found);
 void add_found(std::span<const TreeSums> sums, const Found& found, double* out);
+
+// For [fit]: sets the moments of `fit` over what was found; with its weights, sets `out`, (values, 3,
+// 16), to the sums of weight times value. Neither knows of queries that the walk did not meet.
+void find_moments(const Tree& tree, const FitSources& sources, const Found& found,
+                  const Packet& packet, FitPacket& fit);
+void add_by_weight(const Tree& tree, const FitSources& sources, std::span<const TreeSums> sums,
+                   const Found& found, const Packet& packet, const FitPacket& fit, double* out);
 
 // Sets `means`, as many as `sums`, (rows, 16), to the sums over packet.count, in double and rounded
 // to float; what no source was added to is undefined. Both are aligned to 64 bytes.

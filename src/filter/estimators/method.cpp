@@ -128,7 +128,7 @@ Estimates apply_engine(const MethodInput& input, const EngineSteps& steps) {
         steps.radii({records, roles, given, weights, area}, averages.values(), parameters);
     radius = result.radius;
   }
-  const Problem problem{records, roles, radius, weights, area};
+  const Problem problem{records, roles, radius, weights, area, false, parameters.fit};
   const std::unique_ptr<Engine> engine = steps.engine(problem, block, parameters);
   result.statistics.seconds_index = seconds_since(start);
 

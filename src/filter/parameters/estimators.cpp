@@ -35,7 +35,7 @@ constexpr Refusal kDensityRefusals[] = {
 };
 
 constexpr EstimatorInfo kEstimators[kEstimatorCount] = {
-    {.name = "average", .meaning = "", .shares_traversal = true},
+    {.name = "average", .meaning = "", .fits = true, .shares_traversal = true},
     {.name = "disk",
      .meaning = "photon mapping's",
      .channels = {"normal", "direction"},
@@ -59,6 +59,7 @@ constexpr EstimatorInfo kEstimators[kEstimatorCount] = {
      .bytes = 4 * sizeof(Rgb) + 3 * sizeof(float) + 1},
     {.name = "adaptive",
      .meaning = "balls whose contributions agree",
+     .fits = true,
      .least_share = 1.0 / 16,
      .of_the_whole = "radii",
      // Radii in float and in double, and luminances. Its tree for rings is freed before the tree

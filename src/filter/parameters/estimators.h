@@ -46,6 +46,8 @@ struct EstimatorInfo {
   // Its sums are over the area of the ball's disk, not over their number: it needs the distance and
   // the camera's angle per pixel.
   bool is_over_area = false;
+  // What it does with the contributions in a ball can be [fit] in place of [average].
+  bool fits = false;
   // estimate_many() finds what it gives for many radii in one traversal.
   bool shares_traversal = false;
   // The least share of r_i that it uses as a radius. Below 1: it chooses radii of its own, as the

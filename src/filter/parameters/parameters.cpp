@@ -47,6 +47,11 @@ void Parameters::validate() const {
   }
   require(iterations >= 1, "`iterations`: at least 1");
   require(sources >= 1, "`sources`: 1/K with K >= 1");
+  require(
+      fit == BallFit::mean || info(estimator).fits,
+      fmt::format("`fit`: `estimator {}` is no mean over a ball that a fit could take the place "
+                  "of; give `fit mean`",
+                  info(estimator).name));
   require(agree > 0, "`agree`: a number of standard errors above 0");
   for (const Refusal& refusal : info(estimator).refusals) {
     require(!refusal.applies(*this), std::string(refusal.message));
@@ -74,6 +79,9 @@ std::vector<ChannelNeed> optional_channels(const Parameters& parameters) {
     if (channel.empty()) continue;
     needs.push_back(
         {channel, fmt::format("`estimator {}`", estimator.name), "give `estimator average`"});
+  }
+  if (parameters.fit == BallFit::linear) {
+    needs.push_back({"normal", "`fit linear`", "give `fit mean`"});
   }
   if (parameters.demodulate) {
     needs.push_back({"reflectance", "`demodulate`", "leave `demodulate` out"});

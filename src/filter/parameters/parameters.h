@@ -44,6 +44,12 @@ struct BlockSize {
   std::uint64_t passes = 4;               // passes: this many, >= 1; measured in README.md
 };
 
+// What of the contributions in a ball is c_bar_i.
+enum class BallFit : std::uint8_t {
+  mean,   // [average]
+  linear  // [fit]
+};
+
 // What finds the neighbours; the result is the same.
 enum class EngineKind : std::uint8_t {
   flann,  // engine/: FLANN over groups of records
@@ -62,6 +68,7 @@ struct Parameters {
   // For [adaptive], > 0: a ball grows until the mean of the ring around it differs from its own by
   // more than this many standard errors; measured in README.md.
   double agree = 1.5;
+  BallFit fit = BallFit::mean;
   EngineKind engine = EngineKind::flann;
   bool count_refusals = false;  // pairs in the balls and refusals by term; about doubles the time
 

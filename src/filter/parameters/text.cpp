@@ -69,6 +69,7 @@ Parameter estimator_row() {
 }
 
 constexpr std::string_view kCountNames[] = {"samples", "blocks"};         // of RadiusCount
+constexpr std::string_view kFitNames[] = {"mean", "linear"};              // of BallFit
 constexpr std::string_view kEngineNames[] = {"flann", "plain", "brute"};  // of EngineKind
 
 const Parameter kBeforeTerms[] = {
@@ -145,6 +146,15 @@ const Parameter kAfterTerms[] = {
      },
      [](Parameters& p, const std::string& text) {
        if (text != "off") p.agree = parse_real("agree", text);
+     }},
+    {"fit",
+     "mean|linear",
+     "what of a ball is taken: its mean, or what is linear in place and normal, at its centre",
+     "of mean, linear",
+     {},
+     [](const Parameters& p) { return std::string(kFitNames[static_cast<std::size_t>(p.fit)]); },
+     [](Parameters& p, const std::string& text) {
+       p.fit = static_cast<BallFit>(parse_name("fit", text, kFitNames));
      }},
     {"search",
      "flann|plain|brute",

@@ -38,16 +38,9 @@ struct TriangleNormal {
   }
 };
 
-// An orthonormal frame whose z axis is n. Duff et al. 2017, "Building an Orthonormal Basis,
-// Revisited".
+// An orthonormal frame whose z axis is n.
 struct Frame {
-  explicit Frame(const Vec3& normal) : n(normal) {
-    const float sign = std::copysign(1.0f, n.z);
-    const float a = -1 / (sign + n.z);
-    const float b = n.x * n.y * a;
-    s = Vec3(1 + sign * n.x * n.x * a, sign * b, -sign * n.x);
-    t = Vec3(b, sign + n.y * n.y * a, -n.y);
-  }
+  explicit Frame(const Vec3& normal) : n(normal) { complete_basis(n, s, t); }
   [[nodiscard]] Vec3 to_local(const Vec3& v) const { return {dot(v, s), dot(v, t), dot(v, n)}; }
   [[nodiscard]] Vec3 to_world(const Vec3& v) const { return s * v.x + t * v.y + n * v.z; }
 

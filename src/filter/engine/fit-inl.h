@@ -1,0 +1,159 @@
+// Moments of [fit] over what a walk found, and sums with the weights that come of them.
+#if defined(PSF_FILTER_ENGINE_FIT_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef PSF_FILTER_ENGINE_FIT_INL_H
+#undef PSF_FILTER_ENGINE_FIT_INL_H
+#else
+#define PSF_FILTER_ENGINE_FIT_INL_H
+#endif
+
+#include "filter/engine/found-inl.h"
+#include "filter/engine/walk-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace psf::filter::engine::HWY_NAMESPACE {
+
+// Calls visit(lanes, place) for the sources of the queries in the lanes from `lane` on: those below
+// whole nodes first, in the order in which they were found.
+template <class Visit>
+HWY_INLINE void each_found(const Tree& tree, const Found& found, std::size_t lane,
+                           const Visit& visit) {
+  const M all = hn::FirstN(kD, kLanes);
+  for (const auto& [level, family, bits, count] : found.nodes) {
+    for (std::uint32_t left = bits; left != 0; left &= left - 1) {
+      const std::size_t node = family * kWidth + lowest_bit(left);
+      const std::size_t first = node * kRecordsBelow[level];
+      const std::size_t end = first + tree.size_of(level, node);
+      for (std::size_t place = first; place < end; ++place) visit(all, place);
+    }
+  }
+  for (const auto& [place, lanes] : found.sources[lane / kLanes]) visit(mask_of(lanes), place);
+}
+
+// Three values for each lane.
+struct Triple {
+  V x, y, z;
+
+  static HWY_INLINE Triple load(const float (&rows)[3][kWidth], std::size_t lane) {
+    return {hn::Load(kD, rows[0] + lane), hn::Load(kD, rows[1] + lane),
+            hn::Load(kD, rows[2] + lane)};
+  }
+  [[nodiscard]] HWY_INLINE V dot(const Triple& other) const {
+    return sum_of_products(x, other.x, y, other.y, z, other.z);
+  }
+  // Of a source, whose three values are rows of a group, the difference from these.
+  [[nodiscard]] HWY_INLINE Triple to(const float* source) const {
+    return {hn::Sub(hn::Set(kD, source[0]), x), hn::Sub(hn::Set(kD, source[kWidth]), y),
+            hn::Sub(hn::Set(kD, source[2 * kWidth]), z)};
+  }
+};
+
+// x_j - x_i and y_j - y_i of any source for the queries in some lanes.
+class Away {
+ public:
+  HWY_INLINE Away(const Tree& tree, const FitSources& sources, const Packet& packet,
+                  const FitPacket& fit, std::size_t lane)
+      : tree_(tree), sources_(sources), own_(Triple::load(fit.own, lane)) {
+    const float* x = packet.columns + lane;
+    at_ = {hn::Load(kD, x), hn::Load(kD, x + kWidth), hn::Load(kD, x + 2 * kWidth)};
+  }
+  [[nodiscard]] HWY_INLINE Triple in_place(std::size_t place) const {
+    return at_.to(tree_.group(place / kWidth) + place % kWidth);
+  }
+  [[nodiscard]] HWY_INLINE Triple in_facing(std::size_t place) const {
+    return own_.to(sources_.facing(place / kWidth) + place % kWidth);
+  }
+
+ private:
+  const Tree& tree_;
+  const FitSources& sources_;
+  Triple at_, own_;
+};
+
+HWY_INLINE void moments_of_found(const Tree& tree, const FitSources& sources, const Found& found,
+                                 const Packet& packet, FitPacket& fit) {
+  for (std::size_t lane = 0; lane < kWidth; lane += kLanes) {
+    const Away away(tree, sources, packet, fit, lane);
+    Triple axes[kFeatures];
+    for (std::size_t k = 0; k < 2; ++k) {
+      axes[k] = Triple::load(fit.place[k], lane);
+      axes[2 + k] = Triple::load(fit.facing[k], lane);
+    }
+    V sum[kFeatures], product[kFeatureProducts];
+    for (V& s : sum) s = hn::Zero(kD);
+    for (V& s : product) s = hn::Zero(kD);
+    VD luminance_sq[kParts];
+    for (VD& s : luminance_sq) s = hn::Zero(kDD);
+    each_found(tree, found, lane, [&](M lanes, std::size_t place) HWY_ATTR {
+      const Triple x = away.in_place(place), y = away.in_facing(place);
+      V f[kFeatures];
+      for (std::size_t k = 0; k < kFeatures; ++k) {
+        f[k] = hn::IfThenElseZero(lanes, axes[k].dot(k < 2 ? x : y));
+        sum[k] = hn::Add(sum[k], f[k]);
+        for (std::size_t l = 0; l <= k; ++l) {
+          V& s = product[k * (k + 1) / 2 + l];
+          s = hn::Add(s, hn::Mul(f[k], f[l]));
+        }
+      }
+      const Parts parts(lanes);
+      const VD y_sq = hn::Set(kDD, sources.luminance_sq(0)[place]);
+      for (std::size_t part = 0; part < kParts; ++part) {
+        luminance_sq[part] = add_where(parts.mask[part], luminance_sq[part], y_sq);
+      }
+    });
+    for (std::size_t k = 0; k < kFeatures; ++k) hn::Store(sum[k], kD, fit.sum[k] + lane);
+    for (std::size_t k = 0; k < kFeatureProducts; ++k)
+      hn::Store(product[k], kD, fit.product[k] + lane);
+    for (std::size_t part = 0; part < kParts; ++part) {
+      hn::Store(luminance_sq[part], kDD, fit.luminance_sq + lane + part * kDoubles);
+    }
+  }
+}
+
+// The lanes of a part of a vector of floats, as doubles.
+HWY_INLINE void promote(V values, VD (&parts)[kParts]) {
+  alignas(64) float lanes[kLanes];
+  hn::Store(values, kD, lanes);
+  constexpr hn::Rebind<float, DD> floats;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    parts[part] = hn::PromoteTo(kDD, hn::LoadU(floats, lanes + part * kDoubles));
+  }
+}
+
+// Sets `out`, (3, 16), to the sums of the weights times the values of one of the averages.
+HWY_INLINE void add_weighted(const Tree& tree, const FitSources& sources, const TreeSums& values,
+                             const Found& found, const Packet& packet, const FitPacket& fit,
+                             double* out) {
+  for (std::size_t lane = 0; lane < kWidth; lane += kLanes) {
+    const Away away(tree, sources, packet, fit, lane);
+    const Triple by_place = Triple::load(fit.by_place, lane);
+    const Triple by_facing = Triple::load(fit.by_facing, lane);
+    const V at_mean = hn::Load(kD, fit.at_mean + lane);
+    VD total[3][kParts];
+    for (auto& sum : total) {
+      for (VD& part : sum) part = hn::Zero(kDD);
+    }
+    each_found(tree, found, lane, [&](M lanes, std::size_t place) HWY_ATTR {
+      const V bent =
+          hn::Add(by_place.dot(away.in_place(place)), by_facing.dot(away.in_facing(place)));
+      VD weight[kParts];
+      promote(hn::IfThenElseZero(lanes, hn::Sub(at_mean, bent)), weight);
+      const double* value = values.values(place / kWidth) + place % kWidth;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const VD one = hn::Set(kDD, value[c * kWidth]);
+        for (std::size_t part = 0; part < kParts; ++part) {
+          total[c][part] = hn::Add(total[c][part], hn::Mul(weight[part], one));
+        }
+      }
+    });
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t part = 0; part < kParts; ++part) {
+        hn::Store(total[c][part], kDD, out + c * kWidth + lane + part * kDoubles);
+      }
+    }
+  }
+}
+
+}  // namespace psf::filter::engine::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,67 @@
+// [fit]: in place of the mean of a ball's contributions, the value at its centre of what is linear in
+// place and normal and fits them best.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/vec.h"
+#include "filter/records.h"
+#include "filter/sum.h"
+
+namespace psf::filter {
+
+inline constexpr std::size_t kFeatures = 4;
+inline constexpr std::size_t kFeatureProducts = kFeatures * (kFeatures + 1) / 2;
+
+// The features of source j as record i sees it: f_k = (x_j - x_i) . place[k] for k < 2, and
+// f_(2 + k) = (y_j - y_i) . facing[k], where y is facing().
+struct FitAxes {
+  Vec3 place[2], facing[2];
+};
+// y: normals; of vertices in volumes, which have none, positions.
+[[nodiscard]] std::span<const Vec3> facing(const Records& records);
+// `r_i`: the radius of record i; infinite: places say nothing.
+[[nodiscard]] FitAxes fit_axes(const Records& records, std::uint32_t i, float r_i);
+
+// Sums over the sources in a ball.
+struct FitMoments {
+  double count = 0;
+  double luminance = 0, luminance_sq = 0;  // of what is averaged
+  std::array<double, kFeatures> sum{};
+  std::array<double, kFeatureProducts> product{};  // f_k f_l, l <= k, is number k (k + 1) / 2 + l
+
+  void add(const std::array<double, kFeatures>& f, double y);
+};
+
+// The fit is the mean, and beside it the sum over j of weight(f_ij) c_j.
+struct Fit {
+  std::array<double, kFeatures> slope{};
+  double at_mean = 0;
+
+  [[nodiscard]] double weight(const std::array<double, kFeatures>& f) const;
+};
+[[nodiscard]] Fit fit_of(const FitMoments& moments);
+
+// The share of the way from the mean to the fit that is gone, by colour, so that light stays at
+// least 0. It is found for the whole light and is the same for its layers, which so add up as before.
+class FitShares {
+ public:
+  // `beside`: what the fit has beside the mean.
+  FitShares(const Sum& mean, const Sum& beside)
+      : x_(share(mean.x, beside.x)), y_(share(mean.y, beside.y)), z_(share(mean.z, beside.z)) {}
+  // Of what the shares are of, or of a layer.
+  [[nodiscard]] Rgb taken(const Sum& mean, const Sum& beside) const {
+    return {taken(mean.x, beside.x, x_), taken(mean.y, beside.y, y_), taken(mean.z, beside.z, z_)};
+  }
+
+ private:
+  static double share(double mean, double beside);
+  static float taken(double mean, double beside, double share);
+
+  double x_, y_, z_;
+};
+
+}  // namespace psf::filter
