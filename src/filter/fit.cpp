@@ -16,22 +16,28 @@ constexpr std::size_t at(std::size_t row, std::size_t column) {
   return row * (row + 1) / 2 + column;
 }
 
-// Solves matrix x = right by Cholesky's decomposition. `matrix`: by at(); its eigenvalues are at
-// least `least` but for rounding.
+// Solves matrix x = right by its decomposition into L D L^T. `matrix`: by at(); its eigenvalues are
+// at least `least` but for rounding.
 std::array<double, kFeatures> solve(std::array<double, kFeatureProducts> matrix,
                                     std::array<double, kFeatures> right, double least) {
+  std::array<double, kFeatures> inverse;  // of D
   for (std::size_t k = 0; k < kFeatures; ++k) {
-    for (std::size_t l = 0; l <= k; ++l) {
-      double& entry = matrix[at(k, l)];
-      for (std::size_t m = 0; m < l; ++m) entry -= matrix[at(k, m)] * matrix[at(l, m)];
-      entry = l < k ? entry / matrix[at(l, l)] : std::sqrt(std::max(entry, least));
+    double pivot = matrix[at(k, k)];
+    for (std::size_t l = 0; l < k; ++l) {
+      double& below = matrix[at(k, l)];  // L D, then L
+      for (std::size_t m = 0; m < l; ++m)
+        below -= matrix[at(k, m)] * matrix[at(m, m)] * matrix[at(l, m)];
+      const double scaled = below;
+      below *= inverse[l];
+      pivot -= scaled * below;
+      right[k] -= below * right[l];
     }
-    for (std::size_t l = 0; l < k; ++l) right[k] -= matrix[at(k, l)] * right[l];
-    right[k] /= matrix[at(k, k)];
+    matrix[at(k, k)] = std::max(pivot, least);
+    inverse[k] = 1 / matrix[at(k, k)];
   }
   for (std::size_t k = kFeatures; k-- > 0;) {
+    right[k] *= inverse[k];
     for (std::size_t l = k + 1; l < kFeatures; ++l) right[k] -= matrix[at(l, k)] * right[l];
-    right[k] /= matrix[at(k, k)];
   }
   return right;
 }

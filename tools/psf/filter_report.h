@@ -62,7 +62,9 @@ inline std::string layers_text(const FilterReport& report) {
     beside = std::max(beside, picture.light_beside_layers());
   }
   if (text.empty()) return text;
-  const std::string_view of_the_whole = filter::info(report.parameters.estimator).of_the_whole;
+  const bool fits = report.parameters.fit == filter::BallFit::linear;
+  std::string of_the_whole(filter::info(report.parameters.estimator).of_the_whole);
+  if (fits) of_the_whole += of_the_whole.empty() ? "ridge" : " and the ridge";
   if (!of_the_whole.empty()) text += fmt::format("; with the {} of all light", of_the_whole);
   if (report.outcome.not_finite_in_layers > 0) {
     text +=
@@ -142,6 +144,7 @@ inline void print_report(const FilterReport& report) {
   line("radius", fmt::format("{}, delta {:.4g}, block {}", filter::to_text(p.radius),
                              p.radius.delta, filter::to_text(p.block)));
   line("weights", weights_text(p));
+  if (p.fit == filter::BallFit::linear) line("fit", "linear in place and normal");
   const std::string layers = layers_text(report);
   if (!layers.empty()) line("layers", layers);
   const std::string alpha = alpha_text(report);
