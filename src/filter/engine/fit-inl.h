@@ -69,6 +69,55 @@ class Away {
   Triple at_, own_;
 };
 
+// The lanes of a part of a vector of floats, as doubles.
+HWY_INLINE void promote(V values, VD (&parts)[kParts]) {
+  alignas(64) float lanes[kLanes];
+  hn::Store(values, kD, lanes);
+  constexpr hn::Rebind<float, DD> floats;
+  for (std::size_t part = 0; part < kParts; ++part) {
+    parts[part] = hn::PromoteTo(kDD, hn::LoadU(floats, lanes + part * kDoubles));
+  }
+}
+
+// Sums of floats that stay exact over many sources: what lies below a parent is added up in float, and
+// such sums in double. Parents come one after the other, whatever the width of a vector, so the
+// bytes are the same.
+class MomentSums {
+ public:
+  HWY_INLINE MomentSums() {
+    for (V& s : part_) s = hn::Zero(kD);
+    for (auto& of_lanes : whole_) {
+      for (double& s : of_lanes) s = 0;
+    }
+  }
+  // Before the moments of a source are added.
+  HWY_INLINE void begin(std::size_t place) {
+    const std::size_t parent = place / kRecordsBelow[kParents];
+    if (parent == parent_) return;
+    finish();
+    parent_ = parent;
+  }
+  HWY_INLINE void add(std::size_t k, V value) { part_[k] = hn::Add(part_[k], value); }
+  HWY_INLINE void finish() {
+    for (std::size_t k = 0; k < kCount; ++k) {
+      VD parts[kParts];
+      promote(part_[k], parts);
+      for (std::size_t part = 0; part < kParts; ++part) {
+        double* whole = whole_[k] + part * kDoubles;
+        hn::Store(hn::Add(hn::Load(kDD, whole), parts[part]), kDD, whole);
+      }
+      part_[k] = hn::Zero(kD);
+    }
+  }
+  [[nodiscard]] HWY_INLINE const double* whole(std::size_t k) const { return whole_[k]; }
+
+ private:
+  static constexpr std::size_t kCount = kFeatures + kFeatureProducts;
+  V part_[kCount];
+  alignas(64) double whole_[kCount][kLanes];
+  std::size_t parent_ = 0;
+};
+
 HWY_INLINE void moments_of_found(const Tree& tree, const FitSources& sources, const Found& found,
                                  const Packet& packet, FitPacket& fit) {
   for (std::size_t lane = 0; lane < kWidth; lane += kLanes) {
@@ -78,21 +127,18 @@ HWY_INLINE void moments_of_found(const Tree& tree, const FitSources& sources, co
       axes[k] = Triple::load(fit.place[k], lane);
       axes[2 + k] = Triple::load(fit.facing[k], lane);
     }
-    V sum[kFeatures], product[kFeatureProducts];
-    for (V& s : sum) s = hn::Zero(kD);
-    for (V& s : product) s = hn::Zero(kD);
+    MomentSums sums;
     VD luminance_sq[kParts];
     for (VD& s : luminance_sq) s = hn::Zero(kDD);
     each_found(tree, found, lane, [&](M lanes, std::size_t place) HWY_ATTR {
+      sums.begin(place);
       const Triple x = away.in_place(place), y = away.in_facing(place);
       V f[kFeatures];
       for (std::size_t k = 0; k < kFeatures; ++k) {
         f[k] = hn::IfThenElseZero(lanes, axes[k].dot(k < 2 ? x : y));
-        sum[k] = hn::Add(sum[k], f[k]);
-        for (std::size_t l = 0; l <= k; ++l) {
-          V& s = product[k * (k + 1) / 2 + l];
-          s = hn::Add(s, hn::Mul(f[k], f[l]));
-        }
+        sums.add(k, f[k]);
+        for (std::size_t l = 0; l <= k; ++l)
+          sums.add(kFeatures + k * (k + 1) / 2 + l, hn::Mul(f[k], f[l]));
       }
       const Parts parts(lanes);
       const VD y_sq = hn::Set(kDD, sources.luminance_sq(0)[place]);
@@ -100,22 +146,15 @@ HWY_INLINE void moments_of_found(const Tree& tree, const FitSources& sources, co
         luminance_sq[part] = add_where(parts.mask[part], luminance_sq[part], y_sq);
       }
     });
-    for (std::size_t k = 0; k < kFeatures; ++k) hn::Store(sum[k], kD, fit.sum[k] + lane);
-    for (std::size_t k = 0; k < kFeatureProducts; ++k)
-      hn::Store(product[k], kD, fit.product[k] + lane);
+    sums.finish();
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      for (std::size_t f = 0; f < kFeatures; ++f) fit.sum[f][lane + k] = sums.whole(f)[k];
+      for (std::size_t p = 0; p < kFeatureProducts; ++p)
+        fit.product[p][lane + k] = sums.whole(kFeatures + p)[k];
+    }
     for (std::size_t part = 0; part < kParts; ++part) {
       hn::Store(luminance_sq[part], kDD, fit.luminance_sq + lane + part * kDoubles);
     }
-  }
-}
-
-// The lanes of a part of a vector of floats, as doubles.
-HWY_INLINE void promote(V values, VD (&parts)[kParts]) {
-  alignas(64) float lanes[kLanes];
-  hn::Store(values, kD, lanes);
-  constexpr hn::Rebind<float, DD> floats;
-  for (std::size_t part = 0; part < kParts; ++part) {
-    parts[part] = hn::PromoteTo(kDD, hn::LoadU(floats, lanes + part * kDoubles));
   }
 }
 

@@ -63,8 +63,8 @@ void FitPacket::set_fit(std::size_t k, double count, double luminance) {
     return;
   }
   FitMoments moments{count, luminance, luminance_sq[k], {}, {}};
-  for (std::size_t f = 0; f < kFeatures; ++f) moments.sum[f] = double{sum[f][k]};
-  for (std::size_t p = 0; p < kFeatureProducts; ++p) moments.product[p] = double{product[p][k]};
+  for (std::size_t f = 0; f < kFeatures; ++f) moments.sum[f] = sum[f][k];
+  for (std::size_t p = 0; p < kFeatureProducts; ++p) moments.product[p] = product[p][k];
   const Fit fit = fit_of(moments);
   at_mean[k] = static_cast<float>(fit.at_mean);
   for (std::size_t axis = 0; axis < 3; ++axis) {

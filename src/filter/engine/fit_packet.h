@@ -40,8 +40,8 @@ struct FitPacket {
   alignas(64) float facing[2][3][kWidth];
   alignas(64) float own[3][kWidth];
 
-  alignas(64) float sum[kFeatures][kWidth];
-  alignas(64) float product[kFeatureProducts][kWidth];
+  alignas(64) double sum[kFeatures][kWidth];
+  alignas(64) double product[kFeatureProducts][kWidth];
   alignas(64) double luminance_sq[kWidth];
 
   // The weight of source j is at_mean - (x_j - x_i) . by_place - (y_j - y_i) . by_facing.
