@@ -118,8 +118,9 @@ filter::Estimates WindowReader::estimate(const BlockLoop::Visit& visit,
     block.shade_rate = frame.dump->metadata().shade_rate;
     frames.add(records_.view(), block);
   }
+  filter::Estimates estimates = frames.finish();
   counts_ += frames.counts();
-  return frames.finish();
+  return estimates;
 }
 
 }  // namespace psf::run
