@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import Union
+from typing import Any, Union
 
 from psf import _psf
 from psf._picture import Picture, as_picture
 from psf._progress import Progress, shown
 from psf._psf import Camera
 from psf._studies import Figures, camera_number, warn
-from psf._values import (FileName, Value, file_name, items, real, text, texts, vertex_text, whole,
-                         whole_or_none, wrong)
+from psf._values import (FRAMES, FileName, Value, file_name, frame_span, items, real, text, texts,
+                         vertex_text, whole, whole_or_none, wrong)
 
-_FRAMES = 1 << 32  # a frame's number is below
 # A picture a frame: the name of files with "####" for the frame's number, or pictures in a list.
 Pictures = Union[FileName, Iterable[Union[Picture, FileName]]]
 
@@ -25,10 +24,13 @@ class Sequence:
         pictures = sequence.filter(window=5)                # one a frame
         for frame in sequence.frames:                       # one at a time
             sequence.filter(frame, window=5)[0].save(f"{frame:04}.exr")
+
+    ``rendered``: the figures of psf.render_sequence(), where that made it.
     """
 
     def __init__(self, path: FileName) -> None:
         self._sequence = _psf.Sequence(file_name("path", path))
+        self.rendered: dict[str, Any] | None = None
 
     @property
     def path(self) -> str:
@@ -51,13 +53,14 @@ class Sequence:
 
         ``frames``: these, one or several; all unless given. ``window``: share vertices over so many
         frames, an odd number. ``relit``: a ball of another frame counts where the means differ by
-        at most so many standard errors; None: always. ``positions``: where other frames are
-        searched, at the places of frame 0, "rest", or of now, "world"; unless given, "rest" where
-        the dump has rest_position. The rest is that of ``Dump.filter()``.
+        at most so many standard errors; None: always; unless given, as of the command.
+        ``positions``: where other frames are searched, at the places of frame 0, "rest", or of now,
+        "world"; unless given, "rest" where the dump has rest_position. The rest is that of
+        ``Dump.filter()``.
         """
-        chosen = self.frames if frames is None else [whole("frames", one, _FRAMES)
+        chosen = self.frames if frames is None else [whole("frames", one, FRAMES)
                                                      for one in items(frames)]
-        given, share = texts(parameters), whole("window", window, _FRAMES)
+        given, share = texts(parameters), whole("window", window, FRAMES)
         apart = text("relit", relit)  # an empty text: what the command does without it
         pictures = []
         with shown(progress, "filter") as report:
@@ -134,12 +137,12 @@ def flicker(pictures: Pictures | Mapping[str, Pictures], reference: Pictures, *,
     and flicker are largest. ``exposure``: of the sheet, stops; ``columns``: frames of a row of it.
     """
     rows = pictures if isinstance(pictures, Mapping) else {"": pictures}
-    first, last = _span(frames)
+    first, last = (0, None) if frames is None else frame_span(frames)
     with shown(progress, "flicker") as report:
         result = _psf.flicker([_sequence("pictures", of, label) for label, of in rows.items()],
                               _sequence("reference", reference, "reference"), first, last,
                               real("epsilon", epsilon), real("trim", trim),
-                              real("exposure", exposure), whole("columns", columns, _FRAMES),
+                              real("exposure", exposure), whole("columns", columns, FRAMES),
                               report)
     return Flicker(result)
 
@@ -168,12 +171,3 @@ def _sequence(name: str, value: Pictures, label: str) -> tuple[str, list[_psf.Pi
         if isinstance(value, Picture) or not isinstance(value, Iterable):
             raise wrong(name, "a name with ####, or a list of pictures", value) from None
     return "", [as_picture(name, one)._picture for one in value], label
-
-
-def _span(frames: Iterable[int] | None) -> tuple[int, int | None]:
-    if frames is None:
-        return 0, None
-    numbers = [whole("frames", one, _FRAMES - 1) for one in items(frames)]
-    if not numbers or numbers != list(range(numbers[0], numbers[0] + len(numbers))):
-        raise ValueError("frames: expected numbers one after the other, as range(3, 9)")
-    return numbers[0], numbers[-1] + 1
