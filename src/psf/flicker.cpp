@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <utility>
+#include <string>
+#include <vector>
 
 #include "core/apart.h"
 #include "core/error.h"
@@ -52,6 +53,13 @@ void check_count(const PictureSequence& sequence, const std::string& label,
                           sequence.pictures.size(), frames.first, frames.last));
 }
 
+// The files that pictures in memory were read from.
+void add_files(const PictureSequence& sequence, std::vector<std::string>& inputs) {
+  for (const Picture& picture : sequence.pictures) {
+    if (!picture.file.empty()) inputs.push_back(absolute(picture.file));
+  }
+}
+
 }  // namespace
 
 FlickerResult flicker(std::span<const PictureSequence> sequences, const PictureSequence& reference,
@@ -83,6 +91,8 @@ FlickerResult flicker(std::span<const PictureSequence> sequences, const PictureS
   for (const std::string& file : study::files_of(all, request.frames)) {
     result.inputs.push_back(absolute(file));
   }
+  for (const PictureSequence& sequence : sequences) add_files(sequence, result.inputs);
+  add_files(reference, result.inputs);
   return result;
 }
 

@@ -24,13 +24,12 @@ struct PictureSequence {
 
 // Which frames flicker() takes, what it measures and what it shows.
 struct FlickerOptions {
-  std::uint32_t first_frame = 0;  // the first one
-  std::optional<std::uint32_t>
-      last_frame;           // behind the last; not set: as far as the reference goes
-  double epsilon = 1e-2;    // of the relative error: guards dark places
-  double trim = 0;          // share of the pixels that is left out, where each is largest
-  float exposure = 0;       // of the sheet: stops
-  std::size_t columns = 4;  // frames of a row on the sheet
+  std::uint32_t first_frame = 0;            // the first one
+  std::optional<std::uint32_t> last_frame;  // behind the last; not set: all that the reference has
+  double epsilon = 1e-2;                    // of the relative error: guards dark places
+  double trim = 0;                          // share of the pixels left out, where each is largest
+  float exposure = 0;                       // of the sheet: stops
+  std::size_t columns = 4;                  // frames of a row on the sheet
   // Called now and then by the thread that works, with numbers of frames.
   std::function<void(std::uint64_t done, std::uint64_t total)> on_progress = {};
 };

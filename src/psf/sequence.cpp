@@ -1,5 +1,7 @@
 #include "psf/sequence.h"
 
+#include <utility>
+
 #include "psf/dump_state.h"
 #include "run/sequence.h"
 

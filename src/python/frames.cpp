@@ -35,6 +35,7 @@ FlickerResult flicker(const std::vector<PictureList>& lists, const PictureList& 
                       double trim, float exposure, std::size_t columns,
                       const py::object& progress) {
   std::vector<PictureSequence> sequences;
+  sequences.reserve(lists.size());
   for (const PictureList& list : lists) sequences.push_back(to_sequence(list));
   return work_on(progress, [&](const auto& on_progress) {
     return psf::flicker(sequences, to_sequence(reference),

@@ -166,7 +166,9 @@ class Frames(unittest.TestCase):
                 (lambda: psf.flicker(pictures, pictures, epsilon=0), 2, "epsilon: must be > 0"),
                 (lambda: psf.flicker(pictures, pictures, columns=0), 2, "columns: at least one"),
                 (lambda: psf.flicker(name, name, frames=[3, 4, 5]).save(self.file("e.0004.exr")), 2,
-                 "overwrite the input")):
+                 "overwrite the input"),
+                (lambda: psf.flicker([self.file(f"e.000{frame}.exr") for frame in (3, 4, 5)],
+                                     pictures).save(self.file("e.0004.exr")), 2, "overwrite the input")):
             assert_refused(self, call, code, text)
         for other, error, text in (
                 (lambda: psf.open_sequence(5), TypeError, "path: expected a file name"),
