@@ -14,9 +14,15 @@ template <class Json>
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
+// The same as its file is written.
+template <class Json>
+[[nodiscard]] std::string json_file_text(const Json& json, int indent = 2) {
+  return json_text(json, indent) + "\n";
+}
+
 template <class Json>
 void write_json_file(const std::string& path, const Json& json, int indent = 2) {
-  write_text_file(path, json_text(json, indent) + "\n");
+  write_text_file(path, json_file_text(json, indent));
 }
 
 }  // namespace psf::core

@@ -52,6 +52,10 @@ int exponent_of(const Records& records) {
   return brightest > 0 ? kBrightest - std::ilogb(brightest) : 0;
 }
 
+bool has_moved(const Records& records, std::size_t i) {
+  return !(records.position[i] == records.rest_position[i]);
+}
+
 // Of each record y and y^2 of its luminance times 2^exponent, and whether it has left its place at
 // rest.
 std::vector<Rgb> moments_of_records(std::span<const Rgb> values, const Records& records, bool rest,
@@ -60,15 +64,9 @@ std::vector<Rgb> moments_of_records(std::span<const Rgb> values, const Records& 
   moments.reserve(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     const float y = std::ldexp(luminance(values[i]), exponent);
-    const bool moved = rest && !(records.position[i] == records.rest_position[i]);
-    moments.emplace_back(y, y * y, moved ? 1.0f : 0.0f);
+    moments.emplace_back(y, y * y, rest && has_moved(records, i) ? 1.0f : 0.0f);
   }
   return moments;
-}
-
-// Of one mean of such moments: whether all have moved, or none has.
-bool is_of_one_kind(const Rgb& mean) {
-  return mean.z == 0 || mean.z == 1;
 }
 
 Moments luminances_of(std::uint32_t count, const Rgb& mean) {
@@ -133,7 +131,7 @@ void FrameWindow::visit_pairs(const Records& other, const Block& block, bool res
                               const UseMeans& use) const {
   for (const PairRun& run : runs_of(records_, other, parameters_.weights)) {
     Roles queries = roles_at(records_, block_, parameters_, run.taken, rest);
-    std::erase_if(queries.queries, [&](std::uint32_t i) { return result_.neighbors[i] == 0; });
+    std::erase_if(queries.queries, [&](std::uint32_t i) { return !is_query(result_.roles[i]); });
     const Roles sources = roles_at(other, block, parameters_, run.taken, rest);
     if (queries.queries.empty() || sources.sources.empty()) continue;
     const FramePair pair({records_, queries}, {other, sources}, radius_, run.terms, rest);
@@ -176,9 +174,13 @@ void FrameWindow::add(const Records& other, const Block& block) {
 
 bool FrameWindow::is_alike(std::uint32_t i, const Ball& other) const {
   const Ball& own = own_[i];
-  if (own.mean.z != other.mean.z || !is_of_one_kind(own.mean)) return false;
+  if (terms_.rest) {
+    // All have left their place at rest, or none has: i itself, which may be no source, too.
+    const float moved = has_moved(records_, i) ? 1 : 0;
+    if (other.mean.z != moved || (own.count > 0 && own.mean.z != moved)) return false;
+  }
   if (!terms_.relit) return true;
-  if (own.count < kFewestAlike || other.count < kFewestAlike) return false;
+  if (own.count < kFewestAlike || other.count < kFewestAlike) return false;  // as of orphans
   if (!std::isfinite(own.mean.y) || !std::isfinite(other.mean.y)) return false;
   return same_mean(luminances_of(own.count, own.mean), luminances_of(other.count, other.mean),
                    *terms_.relit);
@@ -228,6 +230,7 @@ Estimates FrameWindow::finish() {
   statistics.min_neighbors = Statistics().min_neighbors;
   for (std::size_t i = 0; i < added_.size(); ++i) {
     if (!is_query(result_.roles[i])) continue;
+    if (result_.neighbors[i] == 0 && added_[i] > 0) ++counts_.orphans;
     result_.neighbors[i] += added_[i];
     statistics.add_query(result_.neighbors[i]);
   }

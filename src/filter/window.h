@@ -22,18 +22,21 @@ struct WindowTerms {
   void validate_with(const Parameters& parameters) const;
 };
 
-// Balls of queries in other frames that hold a source, and those of them that count.
 struct WindowCounts {
-  std::uint64_t found = 0, alike = 0;
+  std::uint64_t found = 0, alike = 0;  // balls in other frames with a source; those that count
+  std::uint64_t orphans = 0;           // orphans of the frame itself that average other frames
   WindowCounts& operator+=(const WindowCounts& other) {
     found += other.found;
     alike += other.alike;
+    orphans += other.orphans;
     return *this;
   }
 };
 
 // Starts from estimate() of a block of the frame itself, and takes in blocks of other frames one by
-// one. A query that has none in its ball of the frame itself, an orphan, takes in nothing.
+// one. An orphan, whose ball has no source in the frame itself, averages those of the other frames
+// alone, where they count; [relit] has nothing of the frame itself to compare them with, so that
+// they do only without it.
 class FrameWindow {
  public:
   // As estimate() has them; all must outlive the window. Throws what estimate() throws, and
@@ -45,8 +48,10 @@ class FrameWindow {
   void add(const Records& other, const Block& block);
 
   // What estimate() returns, with the other frames in the averages and the numbers of neighbours.
-  // Where none of them counted, c_bar is that of estimate() bit for bit.
+  // Where none of them counted, c_bar is that of estimate() bit for bit. Its numbers of orphans are
+  // those of the frame itself.
   [[nodiscard]] Estimates finish();
+  // Of the orphans after finish().
   [[nodiscard]] const WindowCounts& counts() const { return counts_; }
 
  private:

@@ -1,6 +1,7 @@
 #include "psf/dump.h"
 
 #include <mutex>
+#include <utility>
 
 #include "core/error.h"
 #include "psf/dump_state.h"
@@ -58,25 +59,38 @@ void Dump::read_floats(std::string_view channel, std::uint64_t first, std::uint6
 
 FilterResult Dump::filter(const Parameters& parameters, const FilterOptions& options) const {
   const std::shared_lock reading(state_->mutex);
-  const run::Dump dump = state_->at(options.vertex);
   run::FilterRequest request;
+  request.passes = to_run(options.passes);
+  if (!options.layers) request.layers = run::PictureLayers::none();
+  request.max_memory = options.max_memory;
+  request.on_progress = options.on_progress;
+  return filter_with(state_->at(options.vertex), std::move(request), parameters);
+}
+
+std::vector<Camera> cameras_of(const run::Dump& dump) {
+  std::vector<Camera> cameras;
+  for (const formats::CameraInfo& camera : dump.metadata().cameras) {
+    cameras.push_back({camera.name, camera.width, camera.height, camera.angle_per_pixel});
+  }
+  return cameras;
+}
+
+FilterResult filter_with(const run::Dump& dump, run::FilterRequest request,
+                         const Parameters& parameters) {
   request.parameters = to_filter(parameters);
   FilterResult result;
   const std::string note = run::switch_off_missing(dump, {&request.parameters, 1},
                                                    filter::asked_terms(parameters.given()));
   if (!note.empty()) result.notes.push_back(note);
-  request.passes = to_run(options.passes);
-  if (!options.layers) request.layers = run::PictureLayers::none();
-  request.max_memory = options.max_memory;
-  request.on_progress = options.on_progress;
   const run::FilterResult done = run::filter_dump(dump, request);
-  const film::Attributes attributes = run::attributes_of(PSF_VERSION, dump, request.parameters);
+  const film::Attributes attributes = run::attributes_of(PSF_VERSION, dump, request);
   for (std::size_t k = 0; k < done.pictures.size(); ++k) {
+    const std::string& camera = dump.metadata().cameras[k].name;
     film::Image image = done.pictures[k].image();
     image.attributes.insert(image.attributes.begin(), attributes.begin(), attributes.end());
-    film::add_picture(image.attributes, state_->cameras[k].name, request.passes.first,
+    film::add_picture(image.attributes, camera, request.passes.first,
                       request.passes.first + done.passes);
-    result.pictures.push_back(to_picture(std::move(image), state_->cameras[k].name));
+    result.pictures.push_back(to_picture(std::move(image), camera));
   }
   result.passes = done.passes;
   result.blocks = done.blocks;

@@ -1,4 +1,4 @@
-// What stands behind a psf::Dump.
+// What stands behind a psf::Dump, and what sequences share with it.
 #pragma once
 
 #include <shared_mutex>
@@ -8,17 +8,21 @@
 
 #include "psf/dump.h"
 #include "run/dump.h"
+#include "run/filter_dump.h"
 
 namespace psf {
 
+[[nodiscard]] std::vector<Camera> cameras_of(const run::Dump& dump);
+
+// What psf filter makes of a dump or a frame of it: `request` with these parameters.
+[[nodiscard]] FilterResult filter_with(const run::Dump& dump, run::FilterRequest request,
+                                       const Parameters& parameters);
+
 struct Dump::State {
-  explicit State(const std::string& path) : dump(path) {
+  explicit State(const std::string& path) : dump(path), cameras(cameras_of(dump)) {
     for (const formats::Channel& channel : dump.reader().head().channels) {
       channels.push_back({channel.name, std::string(formats::name_of(channel.type)),
                           channel.components, channel.encoding == formats::Encoding::octahedral});
-    }
-    for (const formats::CameraInfo& camera : dump.metadata().cameras) {
-      cameras.push_back({camera.name, camera.width, camera.height, camera.angle_per_pixel});
     }
   }
 

@@ -21,6 +21,7 @@ void check_size(const Picture& picture, std::size_t values, const std::string& l
 
 film::Image to_image(const Picture& picture) {
   film::Image image;
+  image.path = picture.file.empty() ? "the picture" : picture.file;
   image.width = picture.width;
   image.height = picture.height;
   for (const Layer& layer : picture.layers) {
@@ -84,9 +85,7 @@ Picture Picture::relight(const std::map<std::string, std::array<float, 3>>& weig
   for (const auto& [layer, weight] : weights) {
     by_layer[layer] = Rgb(weight[0], weight[1], weight[2]);
   }
-  film::Image image = to_image(*this);
-  image.path = file.empty() ? "the picture" : file;
-  Picture result = to_picture(film::relight(image, by_layer), camera);
+  Picture result = to_picture(film::relight(to_image(*this), by_layer), camera);
   result.file = file;
   return result;
 }

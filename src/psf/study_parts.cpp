@@ -53,7 +53,7 @@ void check_reference(const Picture& reference, const run::Dump& dump, std::size_
 }
 
 std::string file_text(const study::Json& json) {
-  return core::json_text(json, 1) + "\n";
+  return core::json_file_text(json, 1);
 }
 
 std::string absolute(const std::string& path) {

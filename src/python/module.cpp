@@ -164,6 +164,7 @@ PYBIND11_MODULE(_psf, m) {
         });
       });
 
+  bind_frames(m);
   bind_studies(m, dump);
   bind_records(m);
 }

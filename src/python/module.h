@@ -33,6 +33,8 @@ auto work_on(const py::object& progress, const Work& work) {
   return interruptible<Interruptible>(progress, work);
 }
 
+// Sequence, flicker.
+void bind_frames(py::module_& m);
 // sweep, tune, converge, explain.
 void bind_studies(py::module_& m, py::class_<Dump>& dump);
 // filter_records, DumpWriter.

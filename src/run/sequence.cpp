@@ -36,7 +36,7 @@ Sequence::Sequence(const std::string& path, const std::optional<VertexRule>& rul
   whole_ = std::make_shared<const Dump>(path, rule);
   files_.push_back(path);
   const auto& info = whole_->metadata().frames;
-  if (!info) throw Error(ErrorCode::usage, path + ": tells of no frames; leave out --window");
+  if (!info) throw Error(ErrorCode::usage, path + ": tells of no frames; it is no sequence");
   const std::size_t passes = whole_->pass_bounds().size() - 1;
   for (std::uint32_t k = 0; k < info->count && k * info->passes < passes; ++k) {
     frames_.push_back(info->first + k);
@@ -72,13 +72,20 @@ DumpFrame Sequence::frame(std::uint32_t number) const {
   return {std::make_shared<const Dump>(core::numbered(path_, number), rule_, number), {}};
 }
 
-std::vector<DumpFrame> Sequence::around(std::uint32_t number, std::uint32_t width) const {
-  std::vector<DumpFrame> others;
+Window Sequence::around(std::uint32_t number, const Dump& dump, const WindowTexts& texts) const {
+  Window window{texts.width, {}, texts.terms(dump)};
   for (const std::uint32_t other : frames_) {
     const std::uint32_t apart = other < number ? number - other : other - number;
-    if (apart > 0 && apart <= width / 2) others.push_back(frame(other));
+    if (apart > 0 && apart <= texts.width / 2) window.others.push_back(frame(other));
   }
-  return others;
+  return window;
+}
+
+Sequence Sequence::at(const std::optional<VertexRule>& rule) const {
+  Sequence other = *this;
+  other.rule_ = rule;
+  if (whole_) other.whole_ = std::make_shared<const Dump>(whole_->at(rule));
+  return other;
 }
 
 }  // namespace psf::run

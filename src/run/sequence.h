@@ -25,9 +25,13 @@ class Sequence {
   // A frame, with the cameras that it has; the dump lives as long as somebody has it. Throws
   // Error{usage} where there is no such frame.
   [[nodiscard]] DumpFrame frame(std::uint32_t number) const;
-  // The frames around a frame in a window of `width`, which is odd, but for itself; those that the
-  // sequence does not have are left out.
-  [[nodiscard]] std::vector<DumpFrame> around(std::uint32_t number, std::uint32_t width) const;
+  // What is taken in around a frame of `dump`: the frames of its window but for itself, without
+  // those that the sequence does not have. Throws what frame() and WindowTexts throw.
+  [[nodiscard]] Window around(std::uint32_t number, const Dump& dump,
+                              const WindowTexts& texts) const;
+  // The same sequence with another choice of x_i; none: what the file says. Throws what Dump::at()
+  // throws.
+  [[nodiscard]] Sequence at(const std::optional<VertexRule>& rule) const;
   // The name as given, for messages.
   [[nodiscard]] const std::string& path() const { return path_; }
   // The files that hold the frames.

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "core/error.h"
 #include "core/interrupt.h"
+#include "core/number.h"
 #include "core/seconds.h"
 
 namespace psf::run {
@@ -27,7 +29,41 @@ bool same_size(const filter::CameraView& a, const filter::CameraView& b) {
   return a.width == b.width && a.height == b.height;
 }
 
+// The threshold that a text says, "off": none.
+std::optional<double> relit_of(const std::string& text) {
+  if (text == "off") return std::nullopt;
+  const std::optional<double> number = core::parse_number<double>(text);
+  if (number && *number > 0) return number;
+  throw Error(ErrorCode::usage, fmt::format("`relit`: '{}': write a number above 0, or off", text));
+}
+
 }  // namespace
+
+void WindowTexts::validate() const {
+  if (width % 2 == 0) {
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("`window {}`: as many frames before as behind; give an odd number", width));
+  }
+  for (const auto& [text, name] :
+       {std::pair(&relit, "relit"), std::pair(&positions, "positions")}) {
+    if (text->empty() || width > 1) continue;
+    throw Error(ErrorCode::usage,
+                fmt::format("`{}`: is about other frames; give `window K`", name));
+  }
+  if (!relit.empty()) static_cast<void>(relit_of(relit));
+  if (!positions.empty() && positions != "rest" && positions != "world") {
+    throw Error(ErrorCode::usage, fmt::format("`positions`: '{}': write rest or world", positions));
+  }
+}
+
+filter::WindowTerms WindowTexts::terms(const Dump& dump) const {
+  validate();
+  filter::WindowTerms terms;
+  if (!relit.empty()) terms.relit = relit_of(relit);
+  terms.rest = positions.empty() ? dump.has("rest_position") : positions == "rest";
+  return terms;
+}
 
 std::vector<std::pair<std::string, std::string>> describe(const Window& window) {
   if (window.others.empty()) return {};
@@ -82,8 +118,9 @@ filter::Estimates WindowReader::estimate(const BlockLoop::Visit& visit,
     block.shade_rate = frame.dump->metadata().shade_rate;
     frames.add(records_.view(), block);
   }
+  filter::Estimates estimates = frames.finish();
   counts_ += frames.counts();
-  return frames.finish();
+  return estimates;
 }
 
 }  // namespace psf::run

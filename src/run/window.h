@@ -31,6 +31,19 @@ struct Window {
   filter::WindowTerms terms;
 };
 
+// The same as users write it, for a sequence of frames.
+struct WindowTexts {
+  std::uint32_t width = 1;  // frames, the frame itself in their middle
+  std::string relit;        // "1.5" or "off"; empty: what WindowTerms has
+  std::string positions;    // "rest" or "world"; empty: rest where the dump has rest_position
+
+  // Throws Error{usage} for what is none of these, and for texts about other frames where the width
+  // is 1.
+  void validate() const;
+  // Of a frame of `dump`. Throws what validate() throws.
+  [[nodiscard]] filter::WindowTerms terms(const Dump& dump) const;
+};
+
 // How other frames are taken in, by name; empty: there are none.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> describe(const Window& window);
 

@@ -56,9 +56,11 @@ inline const std::vector<Channel> kChannels = {
     {"distance", "f32", 1}, {"normal", "f32", 3},     {"reflectance", "f32", 3},
     {"pixel", "u32", 1}};
 
+// `more`: further metadata, with a comma before it.
 inline void write(const std::string& path, const Plane& plane, std::size_t passes,
-                  unsigned seed = 0) {
-  DumpWriter writer(path, kAbove, kChannels, {true, "{\"seed\": " + std::to_string(seed) + "}"});
+                  unsigned seed = 0, const std::string& more = "") {
+  DumpWriter writer(path, kAbove, kChannels,
+                    {true, "{\"seed\": " + std::to_string(seed) + more + "}"});
   const std::size_t count = kSide * kSide;
   for (std::size_t pass = 0; pass < passes; ++pass) {
     const std::size_t at = pass * count;

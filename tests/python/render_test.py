@@ -55,6 +55,34 @@ class Render(unittest.TestCase):
         self.assertEqual((dump.passes, dump.rendered["paths"]), (3, 3 * 20 * 16))
         self.assertEqual(dump.rendered["bytes"], os.path.getsize(self.file("p.pvb")))
 
+    def test_a_sequence_is_that_of_the_command_in_one_dump_and_in_many(self) -> None:
+        lantern = os.path.join(SAMPLES, "lantern.json")
+        how = dict(size=(20, 16), passes=2, channels=["default", "rest_position"])
+        for name in ("all.pvb", "one.####.pvb"):
+            run("psf-render", lantern, "--size", "20x16", "--passes", "2", "--channels",
+                "default,rest_position", "--frames", "3:6", "--quiet", "-o", self.file("c." + name),
+                "--image", self.file("c.####.exr"))
+            sequence = psf.render_sequence(lantern, self.file("p." + name), frames=range(3, 6),
+                                           image=self.file("p.####.exr"), **how)
+            self.assertEqual((sequence.frames, sequence.path), ([3, 4, 5], self.file("p." + name)))
+            self.assertEqual(sequence.rendered["paths"], 3 * 2 * 20 * 16)
+            expected = psf.open_sequence(self.file("c." + name)).filter(window=3)
+            for frame, got, other in zip((3, 4, 5), sequence.filter(window=3), expected):
+                self.assertTrue(np.array_equal(got.rgb, other.rgb))
+                self.assertEqual(content(self.file(f"p.000{frame}.exr")),
+                                 content(self.file(f"c.000{frame}.exr")))
+        sequence = psf.render_sequence(lantern, frames=[4], **how)
+        self.assertTrue(np.array_equal(
+            sequence.filter()[0].rgb, psf.open(self.file("c.one.0004.pvb")).filter().rgb))
+        path = sequence.path
+        del sequence
+        gc.collect()
+        self.assertFalse(os.path.exists(path))
+        with self.assertRaisesRegex(psf.Error, "r.####.pvb: a dump a frame; psf.render_sequence()"):
+            psf.render(lantern, self.file("r.####.pvb"), frames="0:2", **how)
+        with self.assertRaisesRegex(ValueError, "^frames: expected numbers one after the other"):
+            psf.render_sequence(lantern, frames=[], **how)
+
     def test_the_light_of_a_render_is_weighed_afterwards(self) -> None:
         dump = psf.render(CORNELL, self.file("p.pvb"), size=(20, 16), passes=2, layers="bounces")
         picture = dump.filter()

@@ -1,4 +1,4 @@
-"""The types of the package and of a program that uses it are complete: mypy --strict finds nothing.
+"""The types of the package and of programs that use it are complete: mypy --strict finds nothing.
 
     types_test.py PACKAGE PROGRAMS SAMPLE_DATA
 """
@@ -17,4 +17,5 @@ sys.exit(subprocess.run(
     ["mypy", "--strict", "--python-version", "3.11", "--cache-dir", os.devnull, "-p", "psf",
      ], env=environment).returncode or subprocess.run(
     ["mypy", "--strict", "--python-version", "3.11", "--cache-dir", os.devnull,
-     os.path.join(here, "example.py")], env=environment).returncode)
+     os.path.join(here, "example.py"), os.path.join(here, "frames_example.py")],
+    env=environment).returncode)

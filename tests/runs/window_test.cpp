@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -63,17 +64,20 @@ class AllPairs {
     for (const Rgb& x : frames.rest) rest_.push_back(triple(x));
   }
 
-  // c_bar of record i of frame f; `doubtful`: whether rounding may decide a test.
-  Triple c_bar(std::size_t i, std::size_t f, std::size_t frames, bool& doubtful) const {
+  // c_bar of record i of frame f, none where no ball that counts has a source; `doubtful`: whether
+  // rounding may decide a test.
+  std::optional<Triple> c_bar(std::size_t i, std::size_t f, std::size_t frames,
+                              bool& doubtful) const {
     std::vector<std::size_t> all = ball(i, f, false);
     const std::vector<std::size_t> own_at_rest = ball(i, f, true);
     const Moments own = moments(own_at_rest);
+    const double moved = share_moved({i});
     for (std::size_t g = 0; g < frames; ++g) {
       if (g == f) continue;
       const std::vector<std::size_t> others = ball(i, g, true);
       if (others.empty()) continue;
-      const double moved = share_moved(own_at_rest);
-      if (moved != share_moved(others) || (moved != 0 && moved != 1)) continue;
+      if (share_moved(others) != moved) continue;
+      if (!own_at_rest.empty() && share_moved(own_at_rest) != moved) continue;
       if (run_.window.terms.relit) {
         if (own.count < 8 || others.size() < 8) continue;
         const Moments its = moments(others);
@@ -84,6 +88,7 @@ class AllPairs {
       }
       all.insert(all.end(), others.begin(), others.end());
     }
+    if (all.empty()) return std::nullopt;
     Triple sum{};
     for (const std::size_t j : all) {
       for (std::size_t k = 0; k < 3; ++k) sum[k] += triple(set_.contribution[j])[k];
@@ -92,6 +97,9 @@ class AllPairs {
     return sum;
   }
   [[nodiscard]] bool has_vertex(std::size_t i) const { return (set_.flags[i] & 1) != 0; }
+  [[nodiscard]] bool is_orphan(std::size_t i, std::size_t f) const {
+    return ball(i, f, false).empty();
+  }
 
  private:
   struct Moments {
@@ -139,8 +147,8 @@ class AllPairs {
 };
 
 // Three frames of a cloud, whose upper half moves, brighter in the last.
-Frames cloud() {
-  Frames frames(random_records(600, 7, 0, kOne));
+Frames cloud(double share_unshaded = 0) {
+  Frames frames(random_records(600, 7, share_unshaded, kOne));
   for (std::size_t i = 0; i < frames.set.size(); ++i) {
     RecordSet& set = frames.set;
     set.roughness[i] = 1;
@@ -153,41 +161,69 @@ Frames cloud() {
   return frames;
 }
 
-TEST_CASE("A window of three frames is what loops over all pairs give") {
+// What of the pictures of three frames was compared with loops over all pairs.
+struct Compared {
+  std::size_t all = 0, changed = 0;            // by the other frames
+  std::size_t orphans = 0, still_orphans = 0;  // that other frames have sources for, and have none
+};
+Compared compare_with_loops(const Frames& frames, double r0, bool relit) {
   const TempFolder folder;
-  const Frames frames = cloud();
   frames.write(folder / "a.pvb");
   const auto dump = std::make_shared<const run::Dump>(folder / "a.pvb");
-  for (const bool relit : {true, false}) {
-    std::size_t checked = 0, changed = 0;
-    for (std::size_t f = 0; f < 3; ++f) {
-      FilterRequest run = window_run(dump, f, 3);
-      run.parameters.radius.r0 = 0.6;
-      if (!relit) run.window.terms.relit.reset();
-      const film::Image image = picture_of(*dump, run);
-      run.window.others.clear();
-      const film::Image alone = picture_of(*dump, run);
-      run.window.others = window_run(dump, f, 3).window.others;
-      const AllPairs pairs(frames, run);
-      for (std::size_t k = 0; k < 200; ++k) {
-        const std::size_t i = 200 * f + k;
-        if (!pairs.has_vertex(i)) continue;
-        bool doubtful = false;
-        const Triple c = pairs.c_bar(i, f, 3, doubtful);
-        if (doubtful) continue;
-        const std::size_t pixel = frames.set.pixel[i];
-        const double expected =
-            double{frames.set.unfiltered[i].y} + double{frames.set.throughput[i].y} * c[1];
-        INFO("frame " << f << ", record " << i);
-        CHECK(std::abs(double{(*image.find("G"))[pixel]} - expected) < 1e-5 * (1 + expected));
-        CHECK((*image.find("one.G"))[pixel] == (*image.find("G"))[pixel]);
-        ++checked;
-        changed += (*image.find("G"))[pixel] != (*alone.find("G"))[pixel] ? 1u : 0u;
-      }
+  Compared compared;
+  for (std::size_t f = 0; f < 3; ++f) {
+    FilterRequest run = window_run(dump, f, 3);
+    run.parameters.radius.r0 = r0;
+    if (!relit) run.window.terms.relit.reset();
+    const run::FilterResult result = run::filter_dump(*dump, run);
+    const film::Image image = result.pictures[0].image();
+    run.window.others.clear();
+    const film::Image alone = picture_of(*dump, run);
+    const AllPairs pairs(frames, run);
+    std::size_t orphans = 0;
+    for (std::size_t i = 200 * f; i < 200 * (f + 1); ++i) {
+      if (!pairs.has_vertex(i)) continue;
+      bool doubtful = false;
+      const std::optional<Triple> c = pairs.c_bar(i, f, 3, doubtful);
+      orphans += c && pairs.is_orphan(i, f) ? 1u : 0u;
+      if (doubtful) continue;
+      const std::size_t pixel = frames.set.pixel[i];
+      const float got = (*image.find("G"))[pixel], without = (*alone.find("G"))[pixel];
+      INFO("frame " << f << ", record " << i);
+      compared.still_orphans += c ? 0u : 1u;
+      if (!c) CHECK(got == without);
+      if (!c) continue;
+      const double expected =
+          double{frames.set.unfiltered[i].y} + double{frames.set.throughput[i].y} * (*c)[1];
+      CHECK(std::abs(double{got} - expected) < 1e-5 * (1 + expected));
+      CHECK((*image.find("one.G"))[pixel] == got);
+      ++compared.all;
+      compared.changed += got != without ? 1u : 0u;
     }
-    CHECK(checked > 500);
-    CHECK(changed > 100);
+    CHECK(result.window.orphans == orphans);
+    compared.orphans += orphans;
   }
+  return compared;
+}
+
+TEST_CASE("A window of three frames is what loops over all pairs give") {
+  for (const bool relit : {true, false}) {
+    for (const double share_unshaded : {0.0, 0.3}) {
+      const Compared compared = compare_with_loops(cloud(share_unshaded), 0.6, relit);
+      CHECK(compared.all > 500);
+      CHECK(compared.changed > (share_unshaded == 0 ? 100 : 10));
+    }
+  }
+}
+
+TEST_CASE("Orphans average what loops over all pairs find in other frames, without relit") {
+  const Frames frames = cloud(0.8);
+  const Compared without = compare_with_loops(frames, 0.3, false);
+  CHECK(without.orphans > 50);
+  CHECK(without.still_orphans > 50);
+  const Compared relit = compare_with_loops(frames, 0.3, true);
+  CHECK(relit.orphans == 0);
+  CHECK(relit.still_orphans > 100);
 }
 
 TEST_CASE("A window gives the same pictures for any number of threads and every engine") {
@@ -246,6 +282,33 @@ TEST_CASE("Nothing leaks from a moving object to the floor that it uncovers, nor
         CHECK((*image.find("G"))[pixel] == expected);
       }
     }
+  }
+}
+
+TEST_CASE("A moving object of which no path was shaded takes in itself and not the floor") {
+  for (const bool shaded_later : {true, false}) {
+    const TempFolder folder;
+    Frames frames = plate_on_floor(3, 0.5f);
+    for (std::size_t i = 0; i < frames.set.size(); ++i) {
+      const bool later = i / 200 == 2;
+      if (i % 200 >= 100 && !(later && shaded_later)) frames.set.flags[i] = filter::kHasVertex;
+    }
+    frames.write(folder / "a.pvb");
+    const auto dump = std::make_shared<const run::Dump>(folder / "a.pvb");
+    FilterRequest run = window_run(dump, 1, 3);
+    run.window.others.erase(run.window.others.begin());  // frame 0, where the plate has not moved
+    run.window.terms.relit.reset();
+    const run::FilterResult result = run::filter_dump(*dump, run);
+    const film::Image image = result.pictures[0].image();
+    std::size_t served = 0;
+    for (std::size_t pixel = 0; pixel < 200; ++pixel) {
+      INFO("pixel " << pixel << ", shaded later " << shaded_later);
+      const bool some = (*image.find("neighbors.Y"))[pixel] > 0;
+      CHECK((*image.find("G"))[pixel] == (pixel >= 100 && some ? 3.0f : 1.0f));
+      served += pixel >= 100 && some ? 1u : 0u;
+    }
+    CHECK(result.window.orphans == served);
+    CHECK((served > 10) == shaded_later);
   }
 }
 

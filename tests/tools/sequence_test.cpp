@@ -133,6 +133,7 @@ TEST_CASE("Options about frames that do not fit are named in one line") {
       {"psf filter --window 3 --iterations 2" + all + outs, "cannot be averaged again"},
       {"psf filter --window 3 --estimator hash" + all + outs, "only --estimator average"},
       {"psf filter --passes 0:2" + all + outs, "--passes: are of one frame"},
+      {"psf filter --passes 0:1" + one + outs, "--passes: are of one frame"},
       {"psf filter --window 3 --frame 7" + one + out, "7 is none of them"}};
   for (const auto& [command, message] : wrong) {
     const Outcome outcome = psf::tests::run(command + " --quiet");
@@ -167,4 +168,8 @@ TEST_CASE("psf flicker prints a row a sequence, and a sheet") {
   CHECK(psf::tests::run(command + " --frames 3:5").code == 2);  // too few
   CHECK(psf::tests::run(command + " --frames 3:7").code == 4);  // one is missing
   CHECK(psf::tests::run(command + " --frames 3:6 --label one").code == 2);
+  const Outcome one =
+      psf::tests::run("psf flicker " + a + " --reference " + lantern.in("a.0003.exr"));
+  CHECK(one.code == 2);
+  CHECK(one.err.find("a sequence has #### in its name") != std::string::npos);
 }

@@ -8,7 +8,6 @@
 
 #include "core/error.h"
 #include "core/numbered_name.h"
-#include "option_values.h"
 #include "pass_range.h"
 #include "vertex_option.h"
 
@@ -23,7 +22,7 @@ bool is_of_frames(const std::string& input) {
 }  // namespace
 
 FrameRuns::FrameRuns(const FilterOptions& options, const std::string& vertex) : options_(options) {
-  check_window();
+  options.window.validate();
   const std::optional<run::VertexRule> rule = run::vertex_rule_of(vertex);
   if (!is_of_frames(options.input)) {
     whole_ = std::make_shared<const run::Dump>(options.input, rule);
@@ -31,7 +30,7 @@ FrameRuns::FrameRuns(const FilterOptions& options, const std::string& vertex) : 
     const bool numbered =
         std::any_of(options.outputs.begin(), options.outputs.end(), core::is_numbered);
     const bool several = numbered && whole_->metadata().frames && !options.follow;
-    if (!options.frame && options.window == 1 && !several) return;
+    if (!options.frame && options.window.width == 1 && !several) return;
   }
   sequence_.emplace(options.input, rule);
   choose_frames();
@@ -39,10 +38,10 @@ FrameRuns::FrameRuns(const FilterOptions& options, const std::string& vertex) : 
 
 void FrameRuns::choose_frames() {
   frames_ = options_.frame ? std::vector{*options_.frame} : sequence_->frames();
-  if (frames_.size() == 1) return;
   if (!options_.passes.empty()) {
     throw Error(ErrorCode::usage, "--passes: are of one frame; choose it by --frame");
   }
+  if (frames_.size() == 1) return;
   for (const std::string& output : options_.outputs) {
     if (core::is_numbered(output)) continue;
     throw Error(
@@ -53,39 +52,6 @@ void FrameRuns::choose_frames() {
   }
 }
 
-void FrameRuns::check_window() const {
-  if (options_.window % 2 == 0) {
-    throw Error(ErrorCode::usage,
-                fmt::format("--window {}: as many frames before as behind; give an odd number",
-                            options_.window));
-  }
-  if (options_.window > 1) return;
-  for (const auto& [text, name] :
-       {std::pair(&options_.relit, "--relit"), std::pair(&options_.positions, "--positions")}) {
-    if (text->empty()) continue;
-    throw Error(ErrorCode::usage, fmt::format("{}: is about other frames; give --window K", name));
-  }
-}
-
-filter::WindowTerms FrameRuns::terms(const run::Dump& dump) const {
-  filter::WindowTerms terms;
-  if (options_.relit == "off") {
-    terms.relit.reset();
-  } else if (!options_.relit.empty()) {
-    terms.relit = parse_number<double>(options_.relit);
-    if (!terms.relit || !(*terms.relit > 0)) {
-      throw Error(ErrorCode::usage,
-                  fmt::format("--relit: '{}': write a number above 0, or off", options_.relit));
-    }
-  }
-  const std::string& where = options_.positions;
-  if (!where.empty() && where != "rest" && where != "world") {
-    throw Error(ErrorCode::usage, fmt::format("--positions: '{}': write rest or world", where));
-  }
-  terms.rest = where.empty() ? dump.has("rest_position") : where == "rest";
-  return terms;
-}
-
 FrameRun FrameRuns::operator[](std::size_t k) const {
   if (!sequence_) {
     return {{whole_, parse_passes(options_.passes)}, std::nullopt, {}, options_.outputs};
@@ -93,9 +59,8 @@ FrameRun FrameRuns::operator[](std::size_t k) const {
   const std::uint32_t number = frames_[k];
   FrameRun one{sequence_->frame(number), number, {}, options_.outputs};
   for (std::string& name : one.outputs) name = core::numbered(name, number);
-  if (options_.window > 1) {
-    one.window = {options_.window, sequence_->around(number, options_.window),
-                  terms(*one.frame.dump)};
+  if (options_.window.width > 1) {
+    one.window = sequence_->around(number, *one.frame.dump, options_.window);
   }
   return one;
 }

@@ -36,8 +36,6 @@ class FrameRuns {
 
  private:
   void choose_frames();
-  void check_window() const;
-  [[nodiscard]] filter::WindowTerms terms(const run::Dump& dump) const;
 
   const FilterOptions& options_;
   std::shared_ptr<const run::Dump> whole_;  // where there are no frames to choose from

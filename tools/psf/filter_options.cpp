@@ -118,7 +118,7 @@ void add_frame_options(CLI::App& command, FilterOptions& options) {
       ->excludes("--follow")
       ->type_name("N");
   command
-      .add_option("--window", options.window,
+      .add_option("--window", options.window.width,
                   "share vertices over K frames, an odd number, the frame itself in their middle")
       ->excludes("--passes")
       ->excludes("--follow")
@@ -126,13 +126,13 @@ void add_frame_options(CLI::App& command, FilterOptions& options) {
       ->type_name("K");
   command
       .add_option(
-          "--relit", options.relit,
+          "--relit", options.window.relit,
           fmt::format("with --window: a ball of another frame counts where the means differ "
                       "by at most T standard errors (default {})",
                       *filter::WindowTerms().relit))
       ->type_name("T|off");
   command
-      .add_option("--positions", options.positions,
+      .add_option("--positions", options.window.positions,
                   "with --window: where other frames are searched, at the places of frame 0, which "
                   "what moves keeps (default where the dump has rest_position), or of now")
       ->type_name("rest|world");

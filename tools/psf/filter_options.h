@@ -12,6 +12,7 @@
 #include "filter/parameters/text.h"
 #include "run/dump.h"
 #include "run/pictures.h"
+#include "run/window.h"
 
 namespace psf::tools {
 
@@ -22,10 +23,9 @@ struct FilterOptions : filter::ParameterTexts {
   std::vector<std::string> outputs;
   std::string passes, snapshots;  // as written; empty: all passes, no snapshots
   std::optional<std::uint32_t> frame;
-  std::uint32_t window = 1;      // frames whose vertices are shared
-  std::string relit, positions;  // as written; empty: the defaults
-  std::string layers = "all";    // layers of EXRs, as written
-  std::string tuned;             // file of psf tune that gives the parameters; empty: none
+  run::WindowTexts window;
+  std::string layers = "all";  // layers of EXRs, as written
+  std::string tuned;           // file of psf tune that gives the parameters; empty: none
   bool refusals = false, follow = false;
   std::optional<std::uint64_t> max_memory;  // bytes
 };

@@ -118,9 +118,10 @@ inline std::string frames_text(const FilterReport& report) {
   }
   const filter::WindowCounts& counts = report.outcome.window;
   if (counts.found == 0) return text + "; nothing was found in other frames";
-  return text +
-         fmt::format("; {:.1f}% of the balls in other frames count",
-                     100 * static_cast<double>(counts.alike) / static_cast<double>(counts.found));
+  text += fmt::format("; {:.1f}% of the balls in other frames count",
+                      100 * static_cast<double>(counts.alike) / static_cast<double>(counts.found));
+  if (counts.orphans == 0) return text;
+  return text + fmt::format(", the only ones of {} orphans", core::with_commas(counts.orphans));
 }
 
 inline void print_report(const FilterReport& report) {
@@ -245,6 +246,7 @@ inline nlohmann::ordered_json to_json(const FilterReport& report) {
     for (const auto& [name, value] : run::describe(report.window)) json["window"][name] = value;
     json["window"]["found"] = report.outcome.window.found;
     json["window"]["alike"] = report.outcome.window.alike;
+    json["window"]["orphans"] = report.outcome.window.orphans;
   }
   json["layers"] = report.outcome.pictures.empty() ? std::vector<std::string>()
                                                    : report.outcome.pictures[0].light_layers();

@@ -1,30 +1,19 @@
 // psf flicker: the error of sequences of pictures, and how much it changes from frame to frame.
-#include "metrics/flicker.h"
+#include "study/flicker.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "cli.h"
 #include "core/error.h"
-#include "core/interrupt.h"
 #include "core/json_text.h"
-#include "core/numbered_name.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/text.h"
-#include "film/contact_sheet.h"
-#include "film/picture.h"
-#include "notes.h"
 #include "option_values.h"
 #include "trim.h"
 #include "verbs.h"
@@ -37,35 +26,15 @@ struct FlickerOptions {
   std::vector<std::string> sequences;  // names with the mark
   std::string reference, frames;       // FIRST:LAST as written; empty: 0 on, as far as there are
   std::vector<std::string> labels;
-  double epsilon = 1e-2;
+  double epsilon = study::FlickerRequest().epsilon;
   std::string trim;  // as written; empty: nothing
-  double share = 0;  // the same
   std::vector<std::string> sheets;
   float exposure = 0;
-  std::size_t columns = 4;
+  std::size_t columns = study::FlickerRequest().columns;
 };
 
-struct Row {
-  std::string name;
-  metrics::Flicker measured;
-  std::vector<std::pair<std::uint32_t, film::Picture>> shown;  // for the sheet
-};
-
-// Frames first ... last - 1, of which every sequence has a file.
-struct FrameSpan {
-  std::uint32_t first = 0, last = 0;
-};
-
-FrameSpan frames_of(const FlickerOptions& options) {
-  FrameSpan span;
-  if (options.frames.empty()) {
-    while (std::filesystem::exists(core::numbered(options.reference, span.last))) ++span.last;
-    if (span.last >= 3) return span;
-    throw Error(ErrorCode::usage,
-                fmt::format("{}: has {} from 0 on, and flicker takes at least 3; say which by "
-                            "--frames FIRST:LAST",
-                            options.reference, core::counted(span.last, "frame", "frames")));
-  }
+study::FrameSpan frames_of(const FlickerOptions& options) {
+  if (options.frames.empty()) return study::frames_of_files(options.reference);
   const std::size_t colon = std::min(options.frames.find(':'), options.frames.size());
   const auto first = parse_number<std::uint32_t>(options.frames.substr(0, colon));
   const auto last = parse_number<std::uint32_t>(options.frames.substr(colon).erase(0, 1));
@@ -78,163 +47,58 @@ FrameSpan frames_of(const FlickerOptions& options) {
   return {*first, *last};
 }
 
-void check(const FlickerOptions& options, const FrameSpan& span) {
-  std::vector<std::string> inputs;
-  std::vector<std::string> names = options.sequences;
-  names.push_back(options.reference);
-  for (const std::string& name : names) {
-    if (!core::is_numbered(name)) {
-      throw Error(ErrorCode::usage,
-                  fmt::format("{}: a sequence has {} in its name, for the frame's "
-                              "number",
-                              name, core::kNumberMark));
-    }
-    for (std::uint32_t f = span.first; f < span.last; ++f) {
-      inputs.push_back(core::numbered(name, f));
-    }
-  }
+study::FlickerRequest request_of(const FlickerOptions& options) {
   if (!options.labels.empty() && options.labels.size() != options.sequences.size()) {
     throw Error(ErrorCode::usage,
                 fmt::format("--label: {} for {}; give one for each",
                             core::counted(options.labels.size(), "is", "are"),
                             core::counted(options.sequences.size(), "sequence", "sequences")));
   }
+  study::FlickerRequest request;
+  for (std::size_t k = 0; k < options.sequences.size(); ++k) {
+    request.sequences.push_back(study::sequence_of_files(
+        options.sequences[k], options.labels.empty() ? "" : options.labels[k]));
+  }
+  request.reference = study::sequence_of_files(options.reference, "reference");
+  request.frames = frames_of(options);
+  request.epsilon = options.epsilon;
+  request.trim = parse_trim(options.trim);
+  request.with_sheet = !options.sheets.empty();
+  request.columns = options.columns;
+  request.exposure = options.exposure;
+  return request;
+}
+
+void print_flicker(const study::FlickerRequest& request, const study::FlickerResult& result) {
+  fmt::print("{:>12}{:>12}  frames {}:{}\n", "error", "flicker", request.frames.first,
+             request.frames.last);
+  for (const study::FlickerRow& row : result.rows) {
+    fmt::print("{:>12.4g}{:>12.4g}  {}{}\n", row.error, row.flicker, row.label,
+               row.left_out == 0 ? ""
+                                 : fmt::format("; {} not finite, left out",
+                                               core::counted(row.left_out, "pixel", "pixels")));
+  }
+}
+
+void run(const FlickerOptions& options) {
+  const core::ThreadLimit threads(options.common.threads);
+  study::FlickerRequest request = request_of(options);
+  std::vector<study::PictureSequence> all = request.sequences;
+  all.push_back(request.reference);
   std::vector<std::string> outputs = options.sheets;
   outputs.push_back(options.common.json);
-  check_files(inputs, outputs);
-}
-
-// The frames that the sheet shows: evenly spaced, the first and the last among them.
-std::set<std::uint32_t> shown_frames(const FlickerOptions& options, const FrameSpan& span) {
-  std::set<std::uint32_t> shown;
-  const std::uint64_t steps = options.columns > 1 ? options.columns - 1 : 1;
-  for (std::uint64_t k = 0; k < options.columns; ++k) {
-    shown.insert(span.first + static_cast<std::uint32_t>(k * (span.last - 1 - span.first) / steps));
-  }
-  return shown;
-}
-
-film::Picture read_alike(const std::string& path, const film::Picture& like) {
-  film::Picture picture = film::read_picture(path);
-  static_cast<void>(film::check_comparable(picture, like));
-  return picture;
-}
-
-// Reads all pictures, frame after frame.
-void measure(const FlickerOptions& options, const FrameSpan& span, std::vector<Row>& rows,
-             Row& reference) {
-  const std::set<std::uint32_t> shown =
-      options.sheets.empty() ? std::set<std::uint32_t>() : shown_frames(options, span);
+  check_files(study::files_of(all, request.frames), outputs);
   core::Progress progress("flicker", options.common.quiet);
-  std::optional<film::Picture> first;
-  for (std::uint32_t f = span.first; f < span.last; ++f) {
-    core::throw_if_interrupted("nothing was written");
-    film::Picture truth = film::read_picture(core::numbered(options.reference, f));
-    if (!first) first = truth;
-    static_cast<void>(film::check_comparable(truth, *first));
-    for (std::size_t k = 0; k < options.sequences.size(); ++k) {
-      film::Picture picture = read_alike(core::numbered(options.sequences[k], f), truth);
-      if (rows.size() <= k) {
-        rows.push_back({options.labels.empty() ? options.sequences[k] : options.labels[k],
-                        metrics::Flicker(truth.colors.size(), options.epsilon),
-                        {}});
-      }
-      rows[k].measured.add(picture.colors, truth.colors);
-      if (shown.contains(f)) rows[k].shown.emplace_back(f, std::move(picture));
-    }
-    if (shown.contains(f)) reference.shown.emplace_back(f, std::move(truth));
-    progress.advance(f + 1 - span.first, span.last - span.first);
-  }
-  progress.finish();
-}
-
-double largest_shown(const metrics::Flicker& measured) {
-  constexpr double kShare = 0.99;
-  std::vector<double> values = measured.map();
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-// Where a sequence flickers: white where it does by `most` or more.
-std::vector<Rgb> flicker_picture(const metrics::Flicker& measured, double most, float exposure) {
-  std::vector<Rgb> picture;
-  for (const double value : measured.map()) {
-    const double share = most > 0 ? std::min(1.0, value / most) : 0;
-    const auto grey = static_cast<float>(share * std::exp2(-double{exposure}));
-    picture.emplace_back(grey, grey, grey);
-  }
-  return picture;
-}
-
-void write_sheets(const FlickerOptions& options, const FrameSpan& span,
-                  const std::vector<Row>& rows, const Row& reference) {
-  if (options.sheets.empty()) return;
-  const film::Picture& first = reference.shown.front().second;
-  film::SheetOptions sheet_options;
-  sheet_options.columns = reference.shown.size() + 1;
-  sheet_options.exposure = options.exposure;
-  film::ContactSheet sheet(first.width, first.height, sheet_options);
-  const std::string trimmed =
-      options.trim.empty() ? "" : fmt::format(", without {} of the pixels", options.trim);
-  sheet.set_head(
-      {"Error and flicker", fmt::format("frames {}:{}, epsilon {:g}{}, against {}", span.first,
-                                        span.last, options.epsilon, trimmed, options.reference)});
-  double most = 0;
-  for (const Row& row : rows) most = std::max(most, largest_shown(row.measured));
-  const auto add = [&](const Row& row) {
-    sheet.add_section(row.name);
-    for (const auto& [frame, picture] : row.shown) {
-      sheet.add(picture.colors, fmt::format("frame {}", frame), "");
-    }
+  request.on_progress = [&](std::uint64_t done, std::uint64_t total) {
+    progress.advance(done, total);
   };
-  for (const Row& row : rows) {
-    add(row);
-    sheet.add(flicker_picture(row.measured, most, options.exposure), "where it flickers",
-              fmt::format("error {:.3g}, flicker {:.3g}", row.measured.error(options.share),
-                          row.measured.flicker(options.share)));
-  }
-  add(reference);
-  for (const std::string& path : options.sheets) sheet.write(path);
-}
-
-nlohmann::ordered_json to_json(const FlickerOptions& options, const FrameSpan& span,
-                               const std::vector<Row>& rows) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    list.push_back({{"pictures", options.sequences[k]},
-                    {"label", rows[k].name},
-                    {"error", rows[k].measured.error(options.share)},
-                    {"flicker", rows[k].measured.flicker(options.share)},
-                    {"left_out", rows[k].measured.left_out()}});
-  }
-  return {{"reference", options.reference}, {"first", span.first},   {"last", span.last},
-          {"epsilon", options.epsilon},     {"trim", options.share}, {"rows", list}};
-}
-
-void run(const FlickerOptions& given) {
-  FlickerOptions options = given;
-  options.share = parse_trim(options.trim);
-  const core::ThreadLimit threads(options.common.threads);
-  const FrameSpan span = frames_of(options);
-  check(options, span);
-  std::vector<Row> rows;
-  Row reference{"reference", metrics::Flicker(0, options.epsilon), {}};
-  measure(options, span, rows, reference);
-  write_sheets(options, span, rows, reference);
+  const study::FlickerResult result = study::measure_flicker(request);
+  progress.finish();
+  for (const std::string& path : options.sheets) result.sheet->write(path);
   if (!options.common.json.empty()) {
-    core::write_json_file(options.common.json, to_json(options, span, rows));
+    core::write_json_file(options.common.json, study::to_json(request, result));
   }
-  fmt::print("{:>12}{:>12}  frames {}:{}\n", "error", "flicker", span.first, span.last);
-  for (const Row& row : rows) {
-    fmt::print("{:>12.4g}{:>12.4g}  {}{}\n", row.measured.error(options.share),
-               row.measured.flicker(options.share), row.name,
-               row.measured.left_out() == 0
-                   ? ""
-                   : fmt::format("; {} not finite, left out",
-                                 core::counted(row.measured.left_out(), "pixel", "pixels")));
-  }
+  print_flicker(request, result);
   for (const std::string& path : options.sheets) fmt::print("wrote {}\n", path);
 }
 

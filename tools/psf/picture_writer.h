@@ -28,13 +28,9 @@ class PictureWriter {
  public:
   PictureWriter(const FrameRun& of, const run::FilterRequest& run)
       : names_(of.outputs, camera_names(*of.frame.dump)),
-        attributes_(run::attributes_of(kVersion, *of.frame.dump, run.parameters)),
+        attributes_(run::attributes_of(kVersion, *of.frame.dump, run)),
         cameras_(of.frame.dump->metadata().cameras),
-        first_(run.passes.first) {
-    for (const auto& [name, text] : run::describe(run.window)) {
-      attributes_.emplace_back("psf:" + name, text);
-    }
-  }
+        first_(run.passes.first) {}
 
   // The files that all pictures of a run go to.
   static std::vector<std::string> files_of(const FrameRun& of,

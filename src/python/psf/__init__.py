@@ -18,19 +18,20 @@ bar of that kind.
 
 from psf import _psf
 from psf._dump import Dump, open
+from psf._frames import Flicker, Sequence, flicker, open_sequence
 from psf._parameters import Parameter, geomspace, metrics, parameters
 from psf._picture import Picture, read_picture
 from psf._psf import Camera, Channel, Error
 from psf._records import FilteredRecords, filter_records
-from psf._rendering import render, render_picture, render_settings
+from psf._rendering import render, render_picture, render_sequence, render_settings
 from psf._studies import Ablation, Convergence, Explanation, Figures, Tuning, converge
 from psf._writer import DumpWriter, create
 
 __version__: str = _psf.version
 __all__ = [
     "Ablation", "Camera", "Channel", "Convergence", "Dump", "DumpWriter", "Error", "Explanation",
-    "Figures",
-    "FilteredRecords", "Parameter", "Picture", "Tuning", "converge", "create", "filter_records",
-    "geomspace", "metrics", "open", "parameters", "read_picture", "render",
-    "render_picture", "render_settings",
+    "Figures", "FilteredRecords", "Flicker", "Parameter", "Picture", "Sequence", "Tuning",
+    "converge", "create", "filter_records", "flicker", "geomspace", "metrics", "open",
+    "open_sequence", "parameters", "read_picture", "render", "render_picture", "render_sequence",
+    "render_settings",
 ]

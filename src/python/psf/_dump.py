@@ -99,7 +99,8 @@ class Dump:
     def filter_all(self, *, passes: Passes = None, max_memory: int | None = None,
                    vertex: str | None = None, no_weights: bool = False, progress: Progress = None,
                    **parameters: Value) -> list[Picture]:
-        """What ``psf filter`` does: a picture of every camera.
+        """What ``psf filter`` does: a picture of every camera. Of a dump of several frames
+        ``psf.open_sequence()`` filters them all.
 
         ``vertex``, here and of the studies: average at another vertex of the paths, "first-rough",
         "depth:1", "roughness:0.5" or "distance:20", where the dump has all.

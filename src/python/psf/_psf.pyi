@@ -1,5 +1,6 @@
 # The compiled part of the package; see __init__.py.
-from collections.abc import Callable, Mapping, Sequence
+import collections.abc
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -108,7 +109,7 @@ class Dump:
         reference: Picture,
         lists: Mapping[str, str],
         no_weights: bool,
-        metrics: Sequence[str],
+        metrics: collections.abc.Sequence[str],
         passes: tuple[int, int | None],
         max_memory: int | None,
         camera: int,
@@ -154,6 +155,36 @@ class Dump:
         progress: Callable[[int, int], object] | None,
     ) -> Explanation: ...
 
+class Sequence:
+    def __init__(self, path: str) -> None: ...
+    @property
+    def path(self) -> str: ...
+    @property
+    def frames(self) -> list[int]: ...
+    @property
+    def cameras(self) -> list[Camera]: ...
+    def filter(
+        self,
+        frame: int,
+        given: Mapping[str, str],
+        no_weights: bool,
+        window: int,
+        relit: str,
+        positions: str,
+        max_memory: int | None,
+        vertex: str,
+        progress: Callable[[int, int], object] | None,
+    ) -> FilterResult: ...
+
+class FlickerResult:
+    @property
+    def json(self) -> str: ...
+    @property
+    def rows(self) -> list[dict[str, Any]]: ...
+    @property
+    def png(self) -> bytes: ...
+    def save(self, path: str) -> None: ...
+
 class TuneResult:
     @property
     def json(self) -> str: ...
@@ -197,8 +228,8 @@ class DumpWriter:
     def __init__(
         self,
         path: str,
-        cameras: Sequence[Camera],
-        channels: Sequence[tuple[str, str, int, bool]],
+        cameras: collections.abc.Sequence[Camera],
+        channels: collections.abc.Sequence[tuple[str, str, int, bool]],
         compress: bool,
         metadata: str,
     ) -> None: ...
@@ -208,14 +239,14 @@ class DumpWriter:
     def records(self) -> int: ...
     @property
     def passes(self) -> int: ...
-    def append(self, count: int, arrays: Sequence[npt.NDArray[Any]]) -> None: ...
+    def append(self, count: int, arrays: collections.abc.Sequence[npt.NDArray[Any]]) -> None: ...
     def commit_pass(self) -> None: ...
     def close(self) -> None: ...
 
 def parameters() -> list[tuple[str, str, str, str]]: ...
 def metric_names() -> list[str]: ...
 def converge(
-    dumps: Sequence[str],
+    dumps: collections.abc.Sequence[str],
     reference: Picture,
     lists: Mapping[str, str],
     no_weights: bool,
@@ -224,13 +255,24 @@ def converge(
     epsilon: float,
     all_metrics: bool,
     times: bool,
-    render_json: Sequence[str],
+    render_json: collections.abc.Sequence[str],
     max_memory: int | None,
     vertex: str,
     progress: Callable[[int, int], object] | None,
 ) -> ConvergeResult: ...
+def flicker(
+    sequences: collections.abc.Sequence[tuple[str, collections.abc.Sequence[Picture], str]],
+    reference: tuple[str, collections.abc.Sequence[Picture], str],
+    first: int,
+    last: int | None,
+    epsilon: float,
+    trim: float,
+    exposure: float,
+    columns: int,
+    progress: Callable[[int, int], object] | None,
+) -> FlickerResult: ...
 def filter_records(
-    cameras: Sequence[Camera],
+    cameras: collections.abc.Sequence[Camera],
     given: Mapping[str, str],
     no_weights: bool,
     n: float,

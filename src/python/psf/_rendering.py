@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+import collections.abc
 import json
 import os
 import shutil
 import tempfile
 import weakref
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable
 from types import ModuleType
-from typing import Any, Union
+from typing import Any, TypeVar, Union
 
 from psf._dump import Dump
+from psf._frames import Sequence
 from psf._parameters import Parameter
 from psf._picture import Picture, read_picture
 from psf._progress import Progress, shown
 from psf._studies import warn
-from psf._values import FileName, file_name, items, psf_error, text
+from psf._values import FileName, file_name, frame_span, items, psf_error, text
 
-Setting = Union[str, float, bool, Sequence[Union[str, float]]]
+Setting = Union[str, float, bool, collections.abc.Sequence[Union[str, float]]]
+_Opened = TypeVar("_Opened", Dump, Sequence)
 
 
 def _renderer() -> ModuleType:
@@ -47,13 +50,35 @@ def _settings(given: dict[str, Setting]) -> list[tuple[str, str]]:
 
 
 def _render(scene: str, output: str, images: FileName | Iterable[FileName], resume: bool,
-            progress: Progress, given: dict[str, Setting]) -> dict[str, Any]:
+            progress: Progress, given: dict[str, Setting], stacklevel: int) -> dict[str, Any]:
     files = [file_name("image", one) for one in items(images)]
     with shown(progress, "render") as report:
         figures, notes = _renderer().render(scene, output, files, resume, _settings(given), report)
-    warn(notes, stacklevel=4)
+    warn(notes, stacklevel)
     loaded: dict[str, Any] = json.loads(figures)
     return loaded
+
+
+def _render_into(open: Callable[[str], _Opened], scene: str, output: FileName | None,
+                 images: FileName | Iterable[FileName], resume: bool, progress: Progress,
+                 given: dict[str, Setting]) -> _Opened:
+    """Renders into ``output``, or a file that goes with what is returned, and opens it."""
+    if output is not None:
+        path = file_name("output", output)
+        figures = _render(scene, path, images, resume, progress, given, 5)
+        opened = open(path)
+    else:
+        folder = tempfile.mkdtemp(prefix="psf-")
+        try:
+            path = os.path.join(folder, os.path.splitext(os.path.basename(scene))[0] + ".pvb")
+            figures = _render(scene, path, images, resume, progress, given, 5)
+            opened = open(path)
+        except BaseException:
+            shutil.rmtree(folder)
+            raise
+        weakref.finalize(opened, shutil.rmtree, folder)
+    opened.rendered = figures
+    return opened
 
 
 def render(scene: FileName, output: FileName | None = None, *,
@@ -71,22 +96,26 @@ def render(scene: FileName, output: FileName | None = None, *,
     writes with ``--json``.
     """
     scene = file_name("scene", scene)
-    if output is not None:
-        output = file_name("output", output)
-        figures = _render(scene, output, image, resume, progress, settings)
-        dump = Dump(output)
-    else:
-        folder = tempfile.mkdtemp(prefix="psf-")
-        try:
-            path = os.path.join(folder, os.path.splitext(os.path.basename(scene))[0] + ".pvb")
-            figures = _render(scene, path, image, resume, progress, settings)
-            dump = Dump(path)
-        except BaseException:
-            shutil.rmtree(folder)
-            raise
-        weakref.finalize(dump, shutil.rmtree, folder)
-    dump.rendered = figures
-    return dump
+    if output is not None and "frames" in settings and "####" in file_name("output", output):
+        raise psf_error(2, f"{file_name('output', output)}: a dump a frame; psf.render_sequence() "
+                        "renders and opens them")
+    return _render_into(Dump, scene, output, image, resume, progress, settings)
+
+
+def render_sequence(scene: FileName, output: FileName | None = None, *, frames: Iterable[int],
+                    image: FileName | Iterable[FileName] = (), resume: bool = False,
+                    progress: Progress = None, **settings: Setting) -> Sequence:
+    """What ``psf-render --frames`` does: renders frames of a scene that moves, and opens them.
+
+        sequence = psf.render_sequence("lantern.json", "lantern.pvb", frames=range(0, 8), passes=4,
+                                       channels=["default", "rest_position"])
+
+    With "####" in ``output``, for the frame's number, it is a dump a frame. ``frames``: one after
+    the other without a gap. The rest is that of ``render()``.
+    """
+    first, last = frame_span(frames)
+    return _render_into(Sequence, file_name("scene", scene), output, image, resume, progress,
+                        {**settings, "frames": f"{first}:{last}"})
 
 
 def render_picture(scene: FileName, path: FileName, *, progress: Progress = None,
@@ -100,7 +129,7 @@ def render_picture(scene: FileName, path: FileName, *, progress: Progress = None
         cameras = settings["camera"] = items(settings["camera"])
         if len(cameras) != 1 or cameras[0] == "all":
             raise psf_error(2, "camera: the picture is of one camera; give one name")
-    return read_picture(_render(scene, "", path, False, progress, settings)["images"][0])
+    return read_picture(_render(scene, "", path, False, progress, settings, 4)["images"][0])
 
 
 def render_settings() -> list[Parameter]:

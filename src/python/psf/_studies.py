@@ -15,6 +15,7 @@ from psf._values import (FileName, Value, file_name, items, lists, psf_error, re
 
 if TYPE_CHECKING:
     from psf._dump import Dump
+    from psf._frames import Sequence
 
 
 class Figures(Mapping[str, Any]):
@@ -141,7 +142,7 @@ def warn(notes: Iterable[str], stacklevel: int = 3) -> None:
         warnings.warn(note.replace("`", ""), stacklevel=stacklevel)
 
 
-def camera_number(dump: Dump, camera: str | None) -> int:
+def camera_number(dump: Dump | Sequence, camera: str | None) -> int:
     """The place of a camera; None: the first."""
     if camera is None:
         return 0

@@ -18,6 +18,7 @@ from psf._psf import Error
 Value = Union[str, float, bool, None]  # of a parameter
 Passes = Union[int, slice, None]  # the first n, or a slice first:last; None: all
 FileName = Union[str, "os.PathLike[str]"]
+FRAMES = 1 << 32  # a frame's number is below
 
 
 def wrong(name: str, expected: str, value: object) -> TypeError:
@@ -124,6 +125,14 @@ def pass_range(passes: Passes, all: int) -> tuple[int, int | None]:
         beyond = passes.stop is not None and passes.stop > all
         return first, passes.stop if beyond else last
     return 0, whole_or_none("passes", passes)
+
+
+def frame_span(frames: Iterable[int]) -> tuple[int, int]:
+    """The first of these frames, and the one behind the last."""
+    numbers = [whole("frames", one, FRAMES - 1) for one in items(frames)]
+    if not numbers or numbers != list(range(numbers[0], numbers[0] + len(numbers))):
+        raise ValueError("frames: expected numbers one after the other, as range(3, 9)")
+    return numbers[0], numbers[-1] + 1
 
 
 def as_column(name: str, values: npt.ArrayLike | None, dtype: str, components: int,
