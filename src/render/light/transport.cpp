@@ -3,6 +3,8 @@
 
 #include <map>
 
+#include "render/scene/volumes.h"
+
 namespace psf::render {
 namespace {
 
@@ -30,7 +32,7 @@ Transport::Transport(const Scene& scene, const IntegratorSettings& settings)
       shapes_(scene),
       caster_(scene, accel_, shapes_),
       lights_(scene, shapes_, accel_.radius(), settings.light_sampling),
-      has_volumes_(scene.has_volumes()),
+      has_volumes_(!volume_in_use(scene).empty()),
       coats_(scene.materials.size()),
       metals_(scene.materials.size()) {
   std::map<float, std::shared_ptr<const CoatAlbedo>> tables;
