@@ -12,6 +12,7 @@
 #include "render/light/lights.h"
 #include "render/light/media.h"
 #include "render/light/opacity.h"
+#include "render/light/stand.h"
 #include "render/light/surface.h"
 #include "render/light/tally.h"
 
@@ -71,8 +72,10 @@ class Transport {
 
   // Whether x_i can lie between the surfaces.
   [[nodiscard]] bool has_volumes() const { return has_volumes_; }
-  // The medium in which cameras and the rays of a walk begin.
-  [[nodiscard]] Media media() const { return Media(scene_.medium); }
+  // Puts a walk with the ray of a camera into the media in which that stands. Where `body` then is
+  // one, next_inside() takes the walk on. Radiance is denser by the square of the index in a body, as
+  // it is in glass.
+  void begin(Walk& walk, std::uint64_t& rays) const;
   // Follows the walk's ray to the next surface, through masks and blended ones, and returns the
   // distance; infinity for a miss. Media between the surfaces are as if they were not there.
   [[nodiscard]] float next_surface(const Walk& walk, Surface& surface, Sampler& sampler,
@@ -154,6 +157,7 @@ class Transport {
   RayCaster caster_;
   Lights lights_;
   bool has_volumes_;
+  Stands stands_;
   std::vector<std::shared_ptr<const CoatAlbedo>> coats_;  // by material; equal ior share a table
   // By material: null where no light of many bounces between microfacets is kept.
   std::vector<std::shared_ptr<const CoatAlbedo>> metals_;

@@ -24,9 +24,10 @@ PathRecord VertexIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool
   walk.ray = camera_ray;
   walk.from.position = camera_ray.origin;
   walk.trail = details.trail;
-  walk.media = transport.media();
+  transport.begin(walk, rays);
   Tally seen = Tally::of_camera(lit_->plan, details.layers);
   std::uint32_t no_bits = 0;
+  if (walk.body != kNone && !leave_body(walk, sampler, rays, seen, record)) return record;
   for (;;) {
     Surface surface;
     const float distance = transport.arrive(walk, surface, sampler, rays);
@@ -60,6 +61,18 @@ PathRecord VertexIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool
     walk.sampled = Lights::Sampled::one;
     if (!transport.scatter(v, walk, sampler) || !transport.survives(walk, sampler)) return record;
   }
+}
+
+bool VertexIntegrator::leave_body(Walk& walk, Sampler& sampler, std::uint64_t& rays,
+                                  const Tally& seen, PathRecord& record) const {
+  std::uint32_t no_bits = 0;
+  float no_distance;
+  Branch branch{sampler, no_bits, no_distance, rays, seen, walk.trail};
+  const Vec3 eye = walk.ray.origin;
+  record.coverage = 1;
+  if (!pass_body(walk, branch, record.unfiltered)) return false;
+  record.distance = std::sqrt(length_sq(walk.ray.origin - eye));
+  return true;
 }
 
 void VertexIntegrator::shade_vertex(const Vertex& x, const Walk& walk, Sampler& sampler,
