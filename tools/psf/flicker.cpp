@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -26,6 +27,7 @@
 #include "film/picture.h"
 #include "notes.h"
 #include "option_values.h"
+#include "pass_range.h"
 #include "trim.h"
 #include "verbs.h"
 
@@ -57,25 +59,29 @@ struct FrameSpan {
 };
 
 FrameSpan frames_of(const FlickerOptions& options) {
-  FrameSpan span;
-  if (options.frames.empty()) {
-    while (std::filesystem::exists(core::numbered(options.reference, span.last))) ++span.last;
-    if (span.last >= 3) return span;
-    throw Error(ErrorCode::usage,
-                fmt::format("{}: has {} from 0 on, and flicker takes at least 3; say which by "
-                            "--frames FIRST:LAST",
-                            options.reference, core::counted(span.last, "frame", "frames")));
+  constexpr std::uint64_t kLeast = 3, kMost = std::numeric_limits<std::uint32_t>::max();
+  const NumberRange range = parse_range(options.frames, "--frames");
+  std::uint64_t last = range.last.value_or(range.first);
+  const auto exists = [&](std::uint64_t f) {
+    return std::filesystem::exists(
+        core::numbered(options.reference, static_cast<std::uint32_t>(f)));
+  };
+  while (!range.last && last < kMost && exists(last)) ++last;
+  if (last > kMost) {
+    throw Error(ErrorCode::usage, fmt::format("--frames: {} are the most", kMost));
   }
-  const std::size_t colon = std::min(options.frames.find(':'), options.frames.size());
-  const auto first = parse_number<std::uint32_t>(options.frames.substr(0, colon));
-  const auto last = parse_number<std::uint32_t>(options.frames.substr(colon).erase(0, 1));
-  if (!first || !last || *last < *first + std::uint64_t{3}) {
+  if (last < range.first || last - range.first < kLeast) {
     throw Error(
         ErrorCode::usage,
-        fmt::format("--frames: '{}': write FIRST:LAST, LAST not included, at least 3 frames",
-                    options.frames));
+        range.last
+            ? fmt::format("--frames: '{}': flicker takes at least {} frames", options.frames,
+                          kLeast)
+            : fmt::format("{}: has {} from {} on, and flicker takes at least {}; say which by "
+                          "--frames FIRST:LAST",
+                          options.reference, core::counted(last - range.first, "frame", "frames"),
+                          range.first, kLeast));
   }
-  return {*first, *last};
+  return {static_cast<std::uint32_t>(range.first), static_cast<std::uint32_t>(last)};
 }
 
 void check(const FlickerOptions& options, const FrameSpan& span) {
@@ -256,8 +262,8 @@ void add_flicker(CLI::App& app) {
       ->type_name("FILE.exr");
   command
       ->add_option("--frames", options->frames,
-                   "these frames, LAST not included (default from 0 on, as far as the reference "
-                   "goes)")
+                   "these frames, LAST not included; from 0 on, and as far as the reference goes, "
+                   "unless given")
       ->type_name("FIRST:LAST");
   command
       ->add_option("--label", options->labels,
