@@ -2,6 +2,7 @@
 // paths. The geometric term is bounded, and what that takes away is found by path tracing, so that
 // the mean is that of `path` (Kollig and Keller 2006, "Illumination in the Presence of Weak
 // Singularities").
+#include <algorithm>
 #include <cassert>
 
 #include "render/light/integrators.h"
@@ -44,7 +45,7 @@ class VplIntegrator final : public VertexIntegrator {
   }
   float near_distance(const Segment& segment) const {
     const float asked = settings().vpl_distance;
-    return asked > 0 ? asked : kBounded * segment.distance;
+    return std::max(asked > 0 ? asked : kBounded * segment.distance, kLeastLength);
   }
 
   std::shared_ptr<const Vpls> vpls_;
