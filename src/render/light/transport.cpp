@@ -218,6 +218,7 @@ bool Transport::go_on(const Vertex& v, const BsdfSample& sample, const Vec3& dir
   if (inside && walk.body == kNone) {
     walk.bodies = 1;
     walk.within = Rgb(1, 1, 1);
+    walk.events = 0;
   }
   walk.body = inside ? v.surface.material : kNone;
   walk.ray = {v.surface.origin_toward(direction), normalize(direction), v.surface.time};

@@ -1,6 +1,8 @@
 // From the camera to x_i, and the steps behind it that several integrators take.
 #include "render/light/vertex_integrator.h"
 
+#include "core/interrupt.h"
+
 namespace psf::render {
 
 std::string VertexIntegrator::visibility_rule() const {
@@ -89,7 +91,7 @@ void VertexIntegrator::shade_vertex(const Vertex& x, const Walk& walk, Sampler& 
   } else {
     std::uint32_t no_bits = 0;
     float no_distance;
-    for (std::uint32_t k = 0; k < split; ++k) {
+    for (std::uint32_t k = 0; k < split && !core::overdue(); ++k) {
       Sampler continued = sampler.split(k, split);
       Branch branch{continued, k == 0 ? record.visibility : no_bits,
                     k == 0 ? record.hit_distance : no_distance, rays, tally()};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/interrupt.h"
 #include "render/light/integrators.h"
 #include "render/light/light_paths.h"
 #include "render/light/vertex_integrator.h"
@@ -103,7 +104,7 @@ Rgb VplIntegrator::gather_once(const Vertex& x, const Segment& segment, const Sa
   Vpls own;
   if (settings().vpl_set == VplSet::pixel) {
     const LightPaths paths(transport());
-    for (std::uint32_t k = 0; k < settings().vpl_paths; ++k) {
+    for (std::uint32_t k = 0; k < settings().vpl_paths && !core::overdue(); ++k) {
       Sampler numbers = sampler.split(k, settings().vpl_paths);
       paths.trace(k, numbers, rays, [&](const LightVertex& vertex) { keep(vertex, own); });
     }
