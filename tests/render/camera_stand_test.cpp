@@ -160,7 +160,7 @@ TEST_CASE("Volumes around each other are left one by one, and glass has no mediu
   CHECK(double{mean_of(scene, {{0, 0, -0.75f}, {0, 0, -1}, 1}).y} ==
         Approx(double{kSky} * std::exp(-0.75 - 0.25)).epsilon(0.05));
 
-  // In glass of index 1, closed; and beside a sheet of it, which is not.
+  // In glass of index 1, closed; and between panes of it, which are not.
   for (const bool is_closed : {true, false}) {
     Scene room = with_sky();
     room.meshes.push_back(quad({-9, -9, -4}, {18, 0, 0}, {0, 18, 0}, lamp));
@@ -172,9 +172,11 @@ TEST_CASE("Volumes around each other are left one by one, and glass has no mediu
     if (is_closed) {
       as_sphere(room, glass);
     } else {
-      // Bent around the place, so that this lies in its box; its front is outside.
+      // Around the place, open above and below; the front is outside.
       room.meshes.push_back(quad({-1, -1, -1}, {0, 2, 0}, {2, 0, 0}, glass));
       room.meshes.push_back(quad({1, -1, -1}, {0, 2, 0}, {0, 0, 2}, glass));
+      room.meshes.push_back(quad({-1, -1, -1}, {0, 0, 2}, {0, 2, 0}, glass));
+      room.meshes.push_back(quad({-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, glass));
     }
     CAPTURE(is_closed);
     CHECK(double{mean_of(room, {{0, 0, 0}, {0, 1, 0}, 1}).y} == Approx(0).margin(1e-6));
