@@ -10,9 +10,9 @@ namespace psf::render {
 namespace {
 
 // Five of them, no two nearly alike, and none along an axis or a diagonal.
-const Vec3 kLooks[] = {Vec3(0.3713f, 0.8147f, 0.4459f), Vec3(-0.8571f, 0.2293f, 0.4613f),
-                       Vec3(0.1217f, -0.5479f, 0.8277f), Vec3(0.6983f, -0.3511f, -0.6237f),
-                       Vec3(-0.4337f, 0.1873f, -0.8814f)};
+const Vec3 kDirections[] = {Vec3(0.3713f, 0.8147f, 0.4459f), Vec3(-0.8571f, 0.2293f, 0.4613f),
+                            Vec3(0.1217f, -0.5479f, 0.8277f), Vec3(0.6983f, -0.3511f, -0.6237f),
+                            Vec3(-0.4337f, 0.1873f, -0.8814f)};
 
 Imath::Box3f box_of(const Mesh& mesh) {
   Imath::Box3f box;
@@ -80,7 +80,7 @@ Stand Stands::at(const Vec3& place, float time, std::uint64_t& rays) const {
 
 Stand Stands::found(const Vec3& place, float time, std::uint64_t& rays) const {
   std::vector<Around> looks;
-  for (const Vec3& direction : kLooks) looks.push_back(look(place, direction, time, rays));
+  for (const Vec3& direction : kDirections) looks.push_back(look(place, direction, time, rays));
   // Panes of glass are seldom closed: glass is around a place where it is on all sides.
   const auto is_glass = [&](int material) {
     return scene_.materials[static_cast<std::size_t>(material)].kind == MaterialKind::glass;

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <map>
-#include <optional>
 #include <vector>
 
 #include "render/accel/accel.h"

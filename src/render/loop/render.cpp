@@ -111,7 +111,7 @@ class Loop {
   // What result_ had of this before the pass of which it got a part.
   struct Whole {
     std::uint64_t pass, non_finite;
-    std::vector<film::Film> films;
+    std::vector<film::Film> films;  // empty where no picture is wanted
   };
   std::optional<Whole> whole_;
   // Two slabs in turn: one is traced while the other is written. The future comes last, so that it
@@ -195,7 +195,7 @@ void Loop::drop_pass(std::uint64_t pass) {
   paths_done_ = pass * paths_a_pass_;
   if (!whole_ || whole_->pass != pass) return;
   result_.non_finite = whole_->non_finite;
-  result_.films = std::move(whole_->films);
+  if (!whole_->films.empty()) result_.films = std::move(whole_->films);
 }
 
 bool Loop::trace_pass(std::uint64_t pass) {
@@ -329,7 +329,10 @@ void Loop::emit(std::uint64_t pass, std::uint16_t camera, std::size_t count) {
   const bool begins_pass = paths_done_ - count == pass * paths_a_pass_ && !ends_pass;
   auto work = [this, &slab, pass, camera, count, begins_pass, ends_pass,
                done = done_now()]() mutable {
-    if (begins_pass) whole_ = {pass, result_.non_finite, result_.films};
+    if (begins_pass) {
+      whole_ = {pass, result_.non_finite, {}};
+      if (settings_.replay) whole_->films = result_.films;
+    }
     result_.non_finite += slab.records.add_to(result_.films[camera], count, settings_.shade_rate);
     if (writer_ == nullptr) return;
     writer_->append(count, slab.records.columns(channels_));
