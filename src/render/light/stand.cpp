@@ -1,7 +1,9 @@
 #include "render/light/stand.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "render/light/frame.h"
 #include "render/light/opacity.h"
 #include "render/scene/copies.h"
 #include "render/scene/motion.h"
