@@ -17,7 +17,10 @@ namespace {
 // timeout(1) sends its signal twice, to the program and to its group, within microseconds.
 constexpr std::int64_t kOneSignal = 50'000'000;  // nanoseconds
 
-thread_local const std::atomic<bool>* stopped_here = nullptr;
+// How long a step may take to become whole.
+constexpr std::int64_t kPatience = 1'000'000'000;  // nanoseconds
+
+thread_local const Interruptible* innermost = nullptr;
 
 std::atomic<std::int64_t> first{0};  // time of the first signal; 0: none
 static_assert(std::atomic<std::int64_t>::is_always_lock_free, "a handler needs a lock-free flag");
@@ -84,15 +87,42 @@ void clear_interrupt() noexcept {
 }
 
 bool interrupted() noexcept {
-  return first != 0 || (stopped_here != nullptr && *stopped_here);
+  return first != 0 || (innermost != nullptr && innermost->stopped());
 }
 
-Interruptible::Interruptible(const std::atomic<bool>& stopped) noexcept : before_(stopped_here) {
-  stopped_here = &stopped;
+bool overdue() noexcept {
+  const std::int64_t since = first;
+  return (since != 0 && now() - since > kPatience) ||
+         (innermost != nullptr && innermost->overdue());
+}
+
+Interruptible::Interruptible(const std::atomic<bool>& stopped) noexcept
+    : stopped_(stopped), before_(innermost) {
+  innermost = this;
 }
 
 Interruptible::~Interruptible() {
-  stopped_here = before_;
+  innermost = before_;
+}
+
+const Interruptible* Interruptible::here() noexcept {
+  return innermost;
+}
+
+bool Interruptible::overdue() const noexcept {
+  if (!stopped_) return false;
+  const std::int64_t moment = now();
+  std::int64_t seen = 0;
+  if (seen_.compare_exchange_strong(seen, moment)) seen = moment;
+  return moment - seen > kPatience;
+}
+
+WorkFor::WorkFor(const Interruptible* other) noexcept : before_(innermost) {
+  innermost = other;
+}
+
+WorkFor::~WorkFor() {
+  innermost = before_;
 }
 
 void throw_if_interrupted(const char* what) {

@@ -11,13 +11,19 @@
 #include <exception>
 #include <utility>
 
+#include "core/interrupt.h"
+
 namespace psf::core {
 
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t, std::size_t)>& body) {
+  const Interruptible* const caller = Interruptible::here();
   tbb::parallel_for(
       std::size_t{0}, range_count(count, grain),
-      [&](std::size_t range) { body(range * grain, std::min(count, (range + 1) * grain)); },
+      [&](std::size_t range) {
+        const WorkFor whom(caller);
+        body(range * grain, std::min(count, (range + 1) * grain));
+      },
       tbb::simple_partitioner{});
 }
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
@@ -16,6 +17,7 @@
 #include "catch.h"
 #include "core/error.h"
 #include "core/output_file.h"
+#include "core/parallel.h"
 #include "temp_folder.h"
 
 using psf::core::OutputFile;
@@ -140,4 +142,44 @@ TEST_CASE("the work of one thread ends where it is told to, that of the others g
     CHECK(!other);
   }
   CHECK(!psf::core::interrupted());
+}
+
+TEST_CASE("a step is overdue a second after its interruption") {
+  using namespace std::chrono_literals;
+  std::atomic<bool> stopped{false};
+  CHECK(!psf::core::overdue());
+  {
+    const psf::core::Interruptible here(stopped);
+    CHECK(!psf::core::overdue());
+    stopped = true;
+    CHECK(!psf::core::overdue());
+    std::this_thread::sleep_for(1100ms);
+    CHECK(psf::core::overdue());
+  }
+  CHECK(!psf::core::overdue());
+  psf::core::interrupt();
+  CHECK(!psf::core::overdue());
+  std::this_thread::sleep_for(1100ms);
+  CHECK(psf::core::overdue());
+  psf::core::clear_interrupt();
+  CHECK(!psf::core::overdue());
+}
+
+TEST_CASE("bodies of a parallel loop are interrupted as its caller is") {
+  std::atomic<bool> stopped{true};
+  std::atomic<int> interrupted{0}, strangers{0};
+  const auto count = [&](std::atomic<int>& found) {
+    psf::core::parallel_for(64, 1, [&](std::size_t, std::size_t) {
+      found += psf::core::interrupted() ? 1 : 0;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    });
+  };
+  const psf::core::ThreadLimit four(4);
+  {
+    const psf::core::Interruptible here(stopped);
+    count(interrupted);
+  }
+  CHECK(interrupted == 64);
+  count(strangers);
+  CHECK(strangers == 0);
 }

@@ -1,4 +1,4 @@
-// Clear coats: what a glTF file says of them, and light by them against Fresnel's equations.
+// Clear coats: what glTF and JSON files say of them, and light by them against Fresnel's equations.
 #include "analytic_support.h"
 #include "gltf_load.h"
 #include "load_support.h"
@@ -160,6 +160,56 @@ TEST_CASE("KHR_materials_clearcoat is a clear coat, with its pictures", "[clearc
                                            {{"metallicFactor", 0.0}, {"roughnessFactor", 0.6}}}}))
                           .hash);
   CHECK(load(with_material(clear_material({{"clearcoatFactor", 1.0}}))).hash != plain.hash);
+}
+
+TEST_CASE("A clear coat of JSON is that of glTF", "[clearcoat][load]") {
+  const auto from_json = [](const std::string& keys) {
+    const TempFolder folder;
+    folder.write("c.png", decode_base64(kPng));
+    return load_scene(folder.write(
+        "s.json",
+        R"({"materials": [{"name": "m", "kind": "coat", "reflectance": 1, "roughness": 0.6,
+                     "two_sided": false)" +
+            keys + R"(}], "shapes": [{"shape": "sphere", "material": "m",
+                     "center": [0, 0, 0], "radius": 1}]})"));
+  };
+  const auto from_gltf = [](json extension, bool pictures) {
+    if (pictures) {
+      extension["clearcoatTexture"] = extension["clearcoatRoughnessTexture"] = {{"index", 0}};
+    }
+    Document d = with_material(clear_material(extension));
+    d.root["images"] = {{{"uri", "data:image/png;base64," + kPng}}};
+    d.root["textures"] = {{{"source", 0}}};
+    return load(d);
+  };
+  const std::string maps = R"(, "clearcoat_map": "c.png", "clearcoat_roughness_map": "c.png")";
+  const json both = {{"clearcoatFactor", 0.75}, {"clearcoatRoughnessFactor", 0.25}};
+  const json full = {{"clearcoatFactor", 1.0}, {"clearcoatRoughnessFactor", 1.0}};
+  const std::string numbers = R"(, "clearcoat": 0.75, "clearcoat_roughness": 0.25)";
+  struct Pair {
+    Scene ours, theirs;
+  };
+  for (const Pair& pair :
+       {Pair{from_json(numbers), from_gltf(both, false)},
+        Pair{from_json(numbers + maps), from_gltf(both, true)},
+        Pair{from_json(maps), from_gltf(full, true)},
+        Pair{from_json(R"(, "clearcoat": 1)"), from_gltf({{"clearcoatFactor", 1.0}}, false)},
+        Pair{from_json(""), from_gltf(json::object(), false)}}) {
+    const Material &a = pair.ours.materials.at(0), &b = pair.theirs.materials.at(0);
+    CAPTURE(a.clearcoat, a.clearcoat_roughness, a.clearcoat_texture);
+    CHECK(a.kind == b.kind);
+    CHECK(a.ior == b.ior);
+    CHECK(a.clearcoat == b.clearcoat);
+    CHECK(a.clearcoat_roughness == b.clearcoat_roughness);
+    const Bsdf one = clear_bsdf(pair.ours, {0.5f, 0.5f}),
+               other = clear_bsdf(pair.theirs, {0.5f, 0.5f});
+    CHECK(one.least_roughness() == other.least_roughness());
+    const Vec3 o = angle_direction(0.7, 0), i = angle_direction(0.72, 3.1);
+    float pdf, other_pdf;
+    CHECK(one.evaluate(o, i, pdf) == other.evaluate(o, i, other_pdf));
+    CHECK(pdf == other_pdf);
+    CHECK(pdf > 0);
+  }
 }
 
 TEST_CASE("What of a clear coat is left out is said", "[clearcoat][load]") {

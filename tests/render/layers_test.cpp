@@ -4,6 +4,8 @@
 
 #include "analytic_support.h"
 #include "core/error.h"
+#include "render/light/bsdf.h"
+#include "render/light/frame.h"
 #include "render/light/tally.h"
 #include "render/loop/recorder.h"
 

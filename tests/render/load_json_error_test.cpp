@@ -147,6 +147,28 @@ TEST_CASE("an error of a medium of the JSON scene names file and JSON path", "[l
         "have one");
 }
 
+TEST_CASE("keys of a material that would do nothing are errors", "[load][json]") {
+  const auto material = [](const std::string& keys) {
+    return message_of(R"({"materials": [{"name": "m")" + keys + "}]}");
+  };
+  const std::string at = "s.json:1: /materials/0/";
+  CHECK(material(R"(, "normal_scale": 2)") ==
+        at + "normal_scale: does nothing without \"normal_map\"; add one, or leave it out");
+  CHECK(material(R"(, "bump_height": 0.1)") ==
+        at + "bump_height: does nothing without \"bump_map\"; add one, or leave it out");
+  CHECK(material(R"(, "kind": "coat", "clearcoat_roughness": 0.1)") ==
+        at + "clearcoat_roughness: does nothing without \"clearcoat\"; add one, or leave it out");
+  CHECK(
+      material(R"(, "kind": "coat", "clearcoat_roughness_map": "c.png")") ==
+      at + "clearcoat_roughness_map: does nothing without \"clearcoat\"; add one, or leave it out");
+  for (const std::string key : {"clearcoat", "clearcoat_roughness"}) {
+    CHECK(material(R"(, "kind": "conductor", ")" + key + R"(": 0.5)") ==
+          at + key + ": only materials of the kind coat have a clear coat; leave it out");
+  }
+  CHECK(material(R"(, "kind": "coat", "clearcoat": 2)") ==
+        at + "clearcoat: expected a number in [0, 1], got 2");
+}
+
 TEST_CASE("values within values end somewhere", "[load][json]") {
   const auto nested = [](std::size_t depth) {
     return "{\"shapes\":\n" + std::string(depth, '[') + std::string(depth, ']') + "}";

@@ -4,6 +4,7 @@
 
 #include "analytic_support.h"
 #include "motion_support.h"
+#include "render/camera/camera.h"
 
 namespace psf::render {
 namespace {
@@ -137,6 +138,51 @@ TEST_CASE(
     CHECK(seen > 300);
     // Between eight steps a smooth one is off by its second derivative, 6, times 1/8 of 1/8^2.
     CHECK(off < 0.012);
+  }
+}
+
+TEST_CASE("Smooth normals turn with their mesh while the shutter is open") {
+  // They lean to the right of a square that turns about the view axis, before the other one.
+  const std::string turning = R"(, {"shape": "mesh", "material": "white",
+      "positions": [[-0.5, -0.5, -1.5], [0.5, -0.5, -1.5], [0.5, 0.5, -1.5], [-0.5, 0.5, -1.5]],
+      "triangles": [[0, 1, 2], [0, 2, 3]],
+      "normals": [[0.6, 0, 0.8], [0.6, 0, 0.8], [0.6, 0, 0.8], [0.6, 0, 0.8]],
+      "keyframes": [{"frame": 0}, {"frame": 1, "rotate": 90, "axis": "z"}]})";
+  const tests::Columns columns = dump_of(moving_scene("", R"(, "shutter": [0, 1])", turning), 8);
+  const auto position = tests::values<Vec3>(columns, "position");
+  const auto normal = tests::values<Vec3>(columns, "normal");
+  const auto time = tests::values<float>(columns, "time");
+  const auto flags = tests::values<std::uint8_t>(columns, "flags");
+  double off = 0, least = 1, most = 0;
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    if ((flags[i] & 1) == 0 || std::abs(position[i].z + 1.5f) > 1e-4f) continue;
+    const double angle = double{time[i]} * std::numbers::pi / 2;
+    const Imath::V3d turned(0.6 * std::cos(angle), 0.6 * std::sin(angle), 0.8);
+    off = std::max(off, (Imath::V3d(normal[i]) - turned).length());
+    least = std::min(least, double{time[i]});
+    most = std::max(most, double{time[i]});
+  }
+  CHECK(least < 0.1);
+  CHECK(most > 0.9);
+  // Eight straight lines for 90 degrees.
+  CHECK(off < 5e-3);
+}
+
+TEST_CASE("A lens whose focus moves while the shutter is open is sharp where its keys say") {
+  const Scene scene = moving_scene_of(
+      moving_scene("", R"(, "lens_radius": 0.25, "focus_distance": 2, "shutter": [0, 1],
+          "keyframes": [{"frame": 0}, {"frame": 1, "focus_distance": 4}])"));
+  const CameraRays rays(scene.cameras.at(0));
+  for (const float time : {0.0f, 0.3f, 0.5f, 1.0f}) {
+    const Ray a = rays.ray({20, 10}, {0.1f, 0.5f}, time),
+              b = rays.ray({20, 10}, {0.9f, 0.5f}, time);
+    // Where they are side by side no longer.
+    const double apart = double{b.origin.x} - double{a.origin.x};
+    const double closing = double{a.direction.x} / -double{a.direction.z} -
+                           double{b.direction.x} / -double{b.direction.z};
+    CAPTURE(time);
+    CHECK(apart > 0.1);
+    CHECK(apart / closing == Approx(2 + 2 * double{time}).epsilon(1e-4));
   }
 }
 

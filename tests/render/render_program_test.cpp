@@ -73,6 +73,27 @@ TEST_CASE("^C ends after the pass, with exit code 130 and a file of whole passes
   CHECK(folder.file_count() == 2);  // the dump, and the picture of the passes done
 }
 
+TEST_CASE("^C ends a pass that would take minutes within seconds, and leaves no file of none") {
+  const TempFolder folder;
+  const pid_t child = start({"-o", folder / "a.pvb", "--image", folder / "a.png", "--size",
+                             "2048x2048", "--split", "64"});
+  REQUIRE(eventually([&] { return folder.file_count() > 0; }));
+  std::this_thread::sleep_for(200ms);
+  kill(child, SIGINT);
+  int status = 0;
+  bool ended = false;
+  for (int k = 0; k < 300 && !ended; ++k) {
+    std::this_thread::sleep_for(100ms);
+    ended = waitpid(child, &status, WNOHANG) == child;
+  }
+  CHECK(ended);
+  if (!ended) kill(child, SIGKILL);
+  if (!ended) waitpid(child, &status, 0);
+  CHECK(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 130);
+  CHECK(folder.file_count() == 0);
+}
+
 TEST_CASE("a second ^C ends at once") {
   const TempFolder folder;
   const pid_t child = start({"-o", folder / "a.pvb", "--size", "2048x2048", "--split", "64"});

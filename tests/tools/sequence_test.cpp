@@ -173,3 +173,28 @@ TEST_CASE("psf flicker prints a row a sequence, and a sheet") {
   CHECK(one.code == 2);
   CHECK(one.err.find("a sequence has #### in its name") != std::string::npos);
 }
+
+TEST_CASE("psf flicker takes frames as other verbs take passes") {
+  const Lantern lantern;
+  lantern.must("psf filter --quiet " + lantern.in("all.pvb") + " -o " + lantern.in("a.####.exr"));
+  const std::string a = lantern.in("a.####.exr");
+  const std::string command = "psf flicker --quiet " + a + " --reference " + a + " --frames ";
+  const std::string whole = lantern.must(command + "3:6");
+  CHECK(whole.find("frames 3:6") != std::string::npos);
+  CHECK(lantern.must(command + "3:") == whole);  // as far as the reference goes
+  for (const auto& [frames, message] :
+       {std::pair("3", "--frames: '3': write FIRST:LAST, LAST not included"),
+        std::pair("a:6", "--frames: 'a' is no whole number"),
+        std::pair("3:x", "--frames: 'x' is no whole number"),
+        std::pair("3:5", "--frames: 3:5: flicker takes at least 3"),
+        std::pair("6:3", "--frames: 6:3: flicker takes at least 3"),
+        std::pair("5:", "from 5 on, and flicker takes at least 3"),
+        std::pair("0:4294967296", "--frames: 4294967295 are the most"),
+        std::pair("18446744073709551615:4", "--frames: 4294967295 are the most")}) {
+    const Outcome outcome = psf::tests::run(command + frames);
+    CAPTURE(frames, outcome.err);
+    CHECK(outcome.code == 2);
+    CHECK(outcome.err.find(message) != std::string::npos);
+    CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+  }
+}

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,10 +11,12 @@
 #include "cli.h"
 #include "core/error.h"
 #include "core/json_text.h"
+#include "core/numbered_name.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/text.h"
 #include "option_values.h"
+#include "pass_range.h"
 #include "trim.h"
 #include "verbs.h"
 
@@ -34,17 +36,18 @@ struct FlickerOptions {
 };
 
 study::FrameSpan frames_of(const FlickerOptions& options) {
-  if (options.frames.empty()) return study::frames_of_files(options.reference);
-  const std::size_t colon = std::min(options.frames.find(':'), options.frames.size());
-  const auto first = parse_number<std::uint32_t>(options.frames.substr(0, colon));
-  const auto last = parse_number<std::uint32_t>(options.frames.substr(colon).erase(0, 1));
-  if (!first || !last || *last < *first + std::uint64_t{3}) {
-    throw Error(
-        ErrorCode::usage,
-        fmt::format("--frames: '{}': write FIRST:LAST, LAST not included, at least 3 frames",
-                    options.frames));
-  }
-  return {*first, *last};
+  const NumberRange range = parse_range(options.frames, "--frames");
+  const auto number = [](std::uint64_t frame) {
+    constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
+    if (frame <= kMost) return static_cast<std::uint32_t>(frame);
+    throw Error(ErrorCode::usage, fmt::format("--frames: {} are the most", kMost));
+  };
+  const std::uint32_t first = number(range.first);
+  if (!range.last) return study::frames_of_files(options.reference, first);
+  const std::uint32_t last = number(*range.last);
+  // Before the names of all frames are made, which may be very many.
+  if (last > first) check_files({core::numbered(options.reference, last - 1)}, {});
+  return {first, last};
 }
 
 study::FlickerRequest request_of(const FlickerOptions& options) {
@@ -120,8 +123,8 @@ void add_flicker(CLI::App& app) {
       ->type_name("FILE.exr");
   command
       ->add_option("--frames", options->frames,
-                   "these frames, LAST not included (default from 0 on, as far as the reference "
-                   "goes)")
+                   "these frames, LAST not included; from 0 on, and as far as the reference goes, "
+                   "unless given")
       ->type_name("FIRST:LAST");
   command
       ->add_option("--label", options->labels,

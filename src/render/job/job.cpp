@@ -23,6 +23,8 @@
 namespace psf::render {
 namespace {
 
+namespace fs = std::filesystem;
+
 std::vector<std::size_t> select_cameras(const Scene& scene, const std::vector<std::string>& names) {
   if (names.empty()) return {0};
   std::vector<std::size_t> result;
@@ -218,6 +220,8 @@ void Run::shoot(std::uint32_t index, const Shot& shot) {
   result_.render =
       render(shot.scene, *shot.integrator, job_.settings, writer_ ? &*writer_ : nullptr,
              {index, &head_, is_first ? nullptr : &before});
+  // ^C may have ended its first pass.
+  if (result_.render.passes <= index * job_.settings.passes) return;
   const std::vector<std::string> images =
       write_images(job_, shot.scene, cameras_, names(index), result_.render);
   result_.images.insert(result_.images.end(), images.begin(), images.end());
@@ -247,7 +251,13 @@ JobResult Run::run() {
     shoot(index, *shot);
     if (result_.render.interrupted || result_.render.out_of_time) break;
   }
-  if (writer_) result_.bytes = writer_->bytes_written();
+  if (writer_ && result_.render.interrupted) {
+    writer_.reset();  // cuts off what is not whole
+    std::error_code ignored;
+    if (result_.render.passes > 0) result_.bytes = fs::file_size(job_.output, ignored);
+  } else if (writer_) {
+    result_.bytes = writer_->bytes_written();
+  }
   return std::move(result_);
 }
 
@@ -266,11 +276,18 @@ double JobResult::rays_per_second() const {
 
 void throw_if_stopped(const Job& job, const JobResult& result) {
   if (!result.render.interrupted) return;
+  const std::uint64_t pass = result.render.passes;
+  if (pass == 0) {
+    throw Error(ErrorCode::interrupted,
+                fmt::format("interrupted in pass 1 of {}, which was not whole within a second: "
+                            "nothing is written",
+                            job.settings.total_passes()));
+  }
   const std::string kept = result.bytes ? job.output + " keeps" : "the pictures keep";
   throw Error(ErrorCode::interrupted,
-              fmt::format("interrupted after pass {} of {}: {} all {} paths of them{}",
-                          result.render.passes, job.settings.total_passes(), kept,
-                          result.render.paths, result.bytes ? "; `resume` goes on" : ""));
+              fmt::format("interrupted after pass {} of {}: {} all {} paths of them{}", pass,
+                          job.settings.total_passes(), kept, result.render.paths,
+                          result.bytes ? "; `resume` goes on" : ""));
 }
 
 std::string figures(const Job& job, const JobResult& result) {

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "render/light/integrators.h"
 #include "render/scene/motion.h"
+#include "render/scene/volumes.h"
 
 namespace psf::render {
 
@@ -30,6 +31,31 @@ std::unique_ptr<const Integrator> Integrator::for_pass(const SamplerSettings&, s
                                                        std::uint64_t&) const {
   return nullptr;
 }
+
+namespace {
+
+void refuse_volumes(const Scene& scene, const IntegratorSettings& settings) {
+  const bool from_lights = settings.name == "vpl" || settings.name == "photon";
+  if (!from_lights && settings.photons == 0 && settings.vertices == 0) return;
+  const std::string volume = volume_in_use(scene);
+  if (volume.empty()) return;
+  const auto refuse = [&](const std::string& what, const char* remedy) {
+    throw Error(ErrorCode::usage, fmt::format("{} between the surfaces, and the scene has {}; {}",
+                                              what, volume, remedy));
+  };
+  if (from_lights) {
+    refuse(fmt::format("the integrator {} knows no media", settings.name),
+           "use the integrator path, or take that out of the scene");
+  }
+  if (settings.photons > 0) {
+    refuse("`photons`: paths from the lights know no media",
+           "leave `photons` out, or take that out of the scene");
+  }
+  refuse("`vertices`: the table cannot tell of media",
+         "leave `vertices` out, or take that out of the scene");
+}
+
+}  // namespace
 
 std::unique_ptr<Integrator> make_integrator(const Scene& scene, const IntegratorSettings& given) {
   IntegratorSettings settings = given;
@@ -62,17 +88,7 @@ std::unique_ptr<Integrator> make_integrator(const Scene& scene, const Integrator
                 "paths from the lights (`vpl`, `photon`, `photons`) know no motion while the "
                 "shutter is open; use `path`, or the shutter 0:0");
   }
-  if (scene.has_volumes()) {
-    if (settings.name == "vpl" || settings.name == "photon" || settings.photons > 0) {
-      throw Error(ErrorCode::usage,
-                  "paths from the lights know no media between the surfaces, which the scene has; "
-                  "use the integrator path, without `photons`");
-    }
-    if (settings.vertices > 0) {
-      throw Error(ErrorCode::usage,
-                  "`vertices`: paths in media between the surfaces cannot be told yet");
-    }
-  }
+  refuse_volumes(scene, settings);
   if (settings.photons > 0 && settings.name == "ao") {
     throw Error(ErrorCode::usage, "`photons`: the integrator ao has no lights");
   }

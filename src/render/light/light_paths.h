@@ -6,6 +6,7 @@
 #include <iterator>
 #include <vector>
 
+#include "core/interrupt.h"
 #include "core/parallel.h"
 #include "render/light/transport.h"
 
@@ -68,7 +69,8 @@ class LightPaths {
     std::vector<std::uint64_t> shot(parts.size());
     core::parallel_for(some.count, kPathsATask, [&](std::size_t begin, std::size_t end) {
       const std::size_t part = begin / kPathsATask;
-      for (std::size_t k = some.first + begin; k < some.first + end; ++k) {
+      // What is missing then is of a pass that is dropped.
+      for (std::size_t k = some.first + begin; k < some.first + end && !core::overdue(); ++k) {
         Sampler numbers = sampler(settings, pass, paths, k);
         trace(k, numbers, shot[part], [&](const LightVertex& v) { keep(v, parts[part]); });
       }

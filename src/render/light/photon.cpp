@@ -1,6 +1,7 @@
 // Photon mapping: `direct`, and the density of photons around x_i for what is reflected between
 // surfaces. The radius shrinks with the passes as that of progressive photon mapping does (Hachisuka
 // et al. 2008; passes that know only their number: Knaus and Zwicker 2011).
+#include <algorithm>
 #include <cassert>
 
 #include "render/light/integrators.h"
@@ -51,7 +52,8 @@ class PhotonIntegrator final : public VertexIntegrator {
     // x itself is the last surface that a photon met, and the camera's path has counted it.
     const int most_depth = transport().settings().max_depth - segment.depth + 1;
     const float asked = transport().settings().photon_radius;
-    const float radius = (asked > 0 ? asked : kRadius * segment.distance) * shrunk_;
+    const float wanted = (asked > 0 ? asked : kRadius * segment.distance) * shrunk_;
+    const float radius = std::max(wanted, kLeastLength);
     map_->estimate(x, radius, most_depth, [&](const Photon& photon, const Rgb& radiance) {
       if (tally.wants_diffuse()) {
         tally.set_diffuse(x.bsdf.diffuse_share(x.local, x.frame.to_local(photon.direction)));

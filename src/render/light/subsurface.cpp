@@ -1,4 +1,7 @@
 // Random walks in bodies that are filled with a medium, from one place at the boundary to the next.
+#include <bit>
+
+#include "core/interrupt.h"
 #include "render/light/medium.h"
 #include "render/light/transport.h"
 
@@ -7,6 +10,11 @@ namespace {
 
 // A walk that carries less than this of what it brought in plays Russian roulette.
 constexpr float kFaint = 0.1f;
+// One that was scattered so often goes on with this probability, and again each time that number has
+// doubled. Light that comes back after n events is rare as 1 / sqrt(n) (of a plane surface), so the
+// time that long walks take then shrinks with n, and what they weigh grows only as n does.
+constexpr std::uint64_t kLong = std::uint64_t{1} << 16;
+constexpr float kLongGoesOn = 0.5f;
 
 // What is absorbed has been counted by the walk.
 Vertex medium_vertex(const Medium& medium, int material, const Ray& ray) {
@@ -47,7 +55,7 @@ std::optional<Vertex> Transport::next_inside(Walk& walk, Sampler& sampler,
     }
     return std::optional(v);
   };
-  for (;;) {
+  while (!core::overdue()) {
     Hit hit;
     Rgb weight;
     const Flight flight = fly(medium, walk.ray, walk.within, sampler, weight, [&](float reach) {
@@ -85,12 +93,15 @@ std::optional<Vertex> Transport::next_inside(Walk& walk, Sampler& sampler,
     walk.ray.direction =
         normalize(Frame(walk.ray.direction).to_world(sample_phase(medium.g, sampler.next_2d())));
   }
+  return std::nullopt;
 }
 
 bool Transport::survives_inside(Walk& walk, Sampler& sampler) {
+  ++walk.events;
   const float carried = max_component(walk.within);
-  if (carried >= kFaint) return true;
-  const float q = carried / kFaint;
+  float q = carried < kFaint ? carried / kFaint : 1;
+  if (walk.events >= kLong && std::has_single_bit(walk.events)) q *= kLongGoesOn;
+  if (q >= 1) return true;
   const bool survived = sampler.next_1d() < q;
   if (walk.trail != nullptr) survived ? walk.trail->survive(1 / q) : walk.trail->end();
   if (!survived) return false;

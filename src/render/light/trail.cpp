@@ -6,11 +6,11 @@ void Trail::clear() {
   vertices_.clear();
   beyond_ = false;
   weight_ = Rgb(1, 1, 1);
-  choice_ = 1;
+  choice_ = before_ = Rgb(1, 1, 1);
 }
 
 void Trail::arrive(const Surface& surface, const Vec3& direction, float distance) {
-  choice_ = 1;
+  choice_ = vertices_.empty() ? before_ : Rgb(1, 1, 1);
   if (vertices_.size() == most_) {
     beyond_ = true;
     return;
@@ -69,20 +69,16 @@ void Trail::leave(const Vec3& direction, float pdf, const Rgb& throughput, std::
 }
 
 void Trail::survive(float factor) {
-  if (beyond_) {
-    weight_ *= factor;
-  } else {
-    last().throughput *= factor;
-  }
+  attenuate(Rgb(factor));
 }
 
 void Trail::attenuate(const Rgb& factor) {
-  Rgb& carried = beyond_ ? weight_ : last().throughput;
+  Rgb& carried = beyond_ ? weight_ : vertices_.empty() ? before_ : last().throughput;
   carried = carried * factor;
 }
 
 void Trail::end() {
-  if (beyond_) return;
+  if (beyond_ || vertices_.empty()) return;
   last().outgoing = Vec3(0, 0, 0);
   last().pdf = 0;
   last().throughput = Rgb(0, 0, 0);

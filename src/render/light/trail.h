@@ -57,7 +57,8 @@ class Trail {
   void leave(const Vec3& direction, float pdf, const Rgb& throughput, std::uint8_t lobe);
   // Russian roulette let it go on, and so it counts so much more; or not.
   void survive(float factor);
-  // It went through a medium.
+  // It went through a medium. What is lost before the first vertex, by a camera in a body, is taken
+  // off what that one scatters.
   void attenuate(const Rgb& factor);
   void end();
 
@@ -68,7 +69,8 @@ class Trail {
   std::vector<PathVertex> vertices_;
   bool beyond_ = false;  // behind the last vertex that is kept
   Rgb weight_{1, 1, 1};  // behind it: throughput from its segment to the last surface
-  float choice_ = 1;     // factors of scale() at this vertex, before leave()
+  Rgb choice_{1, 1, 1};  // factors of scale() at this vertex, before leave()
+  Rgb before_{1, 1, 1};  // before the first vertex
 };
 
 // What is told of one path beside its record.

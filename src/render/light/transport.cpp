@@ -3,6 +3,8 @@
 
 #include <map>
 
+#include "render/scene/volumes.h"
+
 namespace psf::render {
 namespace {
 
@@ -30,7 +32,8 @@ Transport::Transport(const Scene& scene, const IntegratorSettings& settings)
       shapes_(scene),
       caster_(scene, accel_, shapes_),
       lights_(scene, shapes_, accel_.radius(), settings.light_sampling),
-      has_volumes_(scene.has_volumes()),
+      has_volumes_(!volume_in_use(scene).empty()),
+      stands_(scene, accel_, shapes_, has_volumes_),
       coats_(scene.materials.size()),
       metals_(scene.materials.size()) {
   std::map<float, std::shared_ptr<const CoatAlbedo>> tables;
@@ -52,6 +55,18 @@ Transport::Transport(const Scene& scene, const IntegratorSettings& settings)
     if (table == nullptr) table = std::make_shared<CoatAlbedo>(scene.materials[m].ior);
     coats_[m] = table;
   }
+}
+
+void Transport::begin(Walk& walk, std::uint64_t& rays) const {
+  const Stand stand = stands_.at(walk.ray.origin, walk.ray.time, rays);
+  walk.media = stand.media;
+  walk.body = stand.body;
+  walk.bodies = stand.bodies;
+  if (walk.body == kNone) return;
+  const float ior = scene_.materials[static_cast<std::size_t>(walk.body)].ior;
+  walk.eta_scale = ior * ior;
+  walk.throughput *= walk.eta_scale;
+  if (walk.trail != nullptr) walk.trail->attenuate(Rgb(walk.eta_scale));
 }
 
 float Transport::next_surface(const Walk& walk, Surface& surface, Sampler& sampler,
@@ -203,6 +218,7 @@ bool Transport::go_on(const Vertex& v, const BsdfSample& sample, const Vec3& dir
   if (inside && walk.body == kNone) {
     walk.bodies = 1;
     walk.within = Rgb(1, 1, 1);
+    walk.events = 0;
   }
   walk.body = inside ? v.surface.material : kNone;
   walk.ray = {v.surface.origin_toward(direction), normalize(direction), v.surface.time};

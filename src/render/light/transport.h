@@ -12,6 +12,7 @@
 #include "render/light/lights.h"
 #include "render/light/media.h"
 #include "render/light/opacity.h"
+#include "render/light/stand.h"
 #include "render/light/surface.h"
 #include "render/light/tally.h"
 
@@ -52,12 +53,13 @@ struct Walk {
   Lights::Sampled sampled = Lights::Sampled::one;  // at the last vertex
   Receiver from{{0, 0, 0}};                        // the last vertex
   int depth = 0;                                   // surface interactions so far
-  Trail* trail = nullptr;  // gets the vertices of the path, where they are wanted
-  int body = kNone;        // material of the body in whose medium the walk is
-  int bodies = 0;          // there: how many bodies of that medium overlap
-  Rgb within{1, 1, 1};     // there: throughput since it came in
-  bool passed = false;     // it came through a body
-  Media media;             // between the surfaces
+  Trail* trail = nullptr;    // gets the vertices of the path, where they are wanted
+  int body = kNone;          // material of the body in whose medium the walk is
+  int bodies = 0;            // there: how many bodies of that medium overlap
+  Rgb within{1, 1, 1};       // there: throughput since it came in
+  std::uint64_t events = 0;  // there: how often it was scattered
+  bool passed = false;       // it came through a body
+  Media media;               // between the surfaces
 };
 
 class Transport {
@@ -71,8 +73,10 @@ class Transport {
 
   // Whether x_i can lie between the surfaces.
   [[nodiscard]] bool has_volumes() const { return has_volumes_; }
-  // The medium in which cameras and the rays of a walk begin.
-  [[nodiscard]] Media media() const { return Media(scene_.medium); }
+  // Puts a walk with the ray of a camera into the media in which that stands. Where `body` then is
+  // one, next_inside() takes the walk on. Radiance is denser by the square of the index in a body, as
+  // it is in glass.
+  void begin(Walk& walk, std::uint64_t& rays) const;
   // Follows the walk's ray to the next surface, through masks and blended ones, and returns the
   // distance; infinity for a miss. Media between the surfaces are as if they were not there.
   [[nodiscard]] float next_surface(const Walk& walk, Surface& surface, Sampler& sampler,
@@ -109,7 +113,8 @@ class Transport {
   [[nodiscard]] bool scatter_power(const Vertex& v, Walk& walk, Sampler& sampler) const;
   // Takes a walk that scatter() sent into a body to where it next can be scattered by scatter(): its
   // boundary, from inside, or where it has one that does not refract, the next place in the medium.
-  // Nothing where the walk ends. Media in bodies: subsurface.cpp.
+  // Nothing where the walk ends, and where the pass is overdue (core/interrupt.h), which is dropped.
+  // Media in bodies: subsurface.cpp.
   [[nodiscard]] std::optional<Vertex> next_inside(Walk& walk, Sampler& sampler,
                                                   std::uint64_t& rays) const;
   // Russian roulette; false where the path ends.
@@ -125,7 +130,7 @@ class Transport {
                                               Vec3& direction, float& correction);
   [[nodiscard]] static bool go_on(const Vertex& v, const BsdfSample& sample, const Vec3& direction,
                                   Walk& walk);
-  // Russian roulette on what a walk lost in a body.
+  // Russian roulette on what a walk lost in a body, and on how often it was scattered there.
   [[nodiscard]] static bool survives_inside(Walk& walk, Sampler& sampler);
   // For a surface that the walk met in a body: whether the walk passes on into another body of the
   // same medium, or out of one.
@@ -154,6 +159,7 @@ class Transport {
   RayCaster caster_;
   Lights lights_;
   bool has_volumes_;
+  Stands stands_;
   std::vector<std::shared_ptr<const CoatAlbedo>> coats_;  // by material; equal ior share a table
   // By material: null where no light of many bounces between microfacets is kept.
   std::vector<std::shared_ptr<const CoatAlbedo>> metals_;

@@ -1,6 +1,8 @@
 // From the camera to x_i, and the steps behind it that several integrators take.
 #include "render/light/vertex_integrator.h"
 
+#include "core/interrupt.h"
+
 namespace psf::render {
 
 std::string VertexIntegrator::visibility_rule() const {
@@ -24,9 +26,10 @@ PathRecord VertexIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool
   walk.ray = camera_ray;
   walk.from.position = camera_ray.origin;
   walk.trail = details.trail;
-  walk.media = transport.media();
+  transport.begin(walk, rays);
   Tally seen = Tally::of_camera(lit_->plan, details.layers);
   std::uint32_t no_bits = 0;
+  if (walk.body != kNone && !leave_body(walk, sampler, rays, seen, record)) return record;
   for (;;) {
     Surface surface;
     const float distance = transport.arrive(walk, surface, sampler, rays);
@@ -62,6 +65,18 @@ PathRecord VertexIntegrator::trace(const Ray& camera_ray, Sampler& sampler, bool
   }
 }
 
+bool VertexIntegrator::leave_body(Walk& walk, Sampler& sampler, std::uint64_t& rays,
+                                  const Tally& seen, PathRecord& record) const {
+  std::uint32_t no_bits = 0;
+  float no_distance;
+  Branch branch{sampler, no_bits, no_distance, rays, seen, walk.trail};
+  const Vec3 eye = walk.ray.origin;
+  record.coverage = 1;
+  if (!pass_body(walk, branch, record.unfiltered)) return false;
+  record.distance = std::sqrt(length_sq(walk.ray.origin - eye));
+  return true;
+}
+
 void VertexIntegrator::shade_vertex(const Vertex& x, const Walk& walk, Sampler& sampler,
                                     std::uint64_t& rays, const PathDetails& details,
                                     PathRecord& record) const {
@@ -76,7 +91,7 @@ void VertexIntegrator::shade_vertex(const Vertex& x, const Walk& walk, Sampler& 
   } else {
     std::uint32_t no_bits = 0;
     float no_distance;
-    for (std::uint32_t k = 0; k < split; ++k) {
+    for (std::uint32_t k = 0; k < split && !core::overdue(); ++k) {
       Sampler continued = sampler.split(k, split);
       Branch branch{continued, k == 0 ? record.visibility : no_bits,
                     k == 0 ? record.hit_distance : no_distance, rays, tally()};

@@ -70,6 +70,10 @@ class VertexIntegrator : public Integrator {
   void follow(Vertex v, Walk& walk, Branch& branch, Rgb& sum) const;
 
  private:
+  // Takes a walk that began in a body out of it; what light it finds there belongs to u_i. False
+  // where the path ends.
+  [[nodiscard]] bool leave_body(Walk& walk, Sampler& sampler, std::uint64_t& rays,
+                                const Tally& seen, PathRecord& record) const;
   // Fills c_i and what comes with it.
   void shade_vertex(const Vertex& x, const Walk& walk, Sampler& sampler, std::uint64_t& rays,
                     const PathDetails& details, PathRecord& record) const;

@@ -2,8 +2,10 @@
 // paths. The geometric term is bounded, and what that takes away is found by path tracing, so that
 // the mean is that of `path` (Kollig and Keller 2006, "Illumination in the Presence of Weak
 // Singularities").
+#include <algorithm>
 #include <cassert>
 
+#include "core/interrupt.h"
 #include "render/light/integrators.h"
 #include "render/light/light_paths.h"
 #include "render/light/vertex_integrator.h"
@@ -44,7 +46,7 @@ class VplIntegrator final : public VertexIntegrator {
   }
   float near_distance(const Segment& segment) const {
     const float asked = settings().vpl_distance;
-    return asked > 0 ? asked : kBounded * segment.distance;
+    return std::max(asked > 0 ? asked : kBounded * segment.distance, kLeastLength);
   }
 
   std::shared_ptr<const Vpls> vpls_;
@@ -102,7 +104,7 @@ Rgb VplIntegrator::gather_once(const Vertex& x, const Segment& segment, const Sa
   Vpls own;
   if (settings().vpl_set == VplSet::pixel) {
     const LightPaths paths(transport());
-    for (std::uint32_t k = 0; k < settings().vpl_paths; ++k) {
+    for (std::uint32_t k = 0; k < settings().vpl_paths && !core::overdue(); ++k) {
       Sampler numbers = sampler.split(k, settings().vpl_paths);
       paths.trace(k, numbers, rays, [&](const LightVertex& vertex) { keep(vertex, own); });
     }

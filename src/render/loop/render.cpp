@@ -9,6 +9,7 @@
 #include <cmath>
 #include <future>
 #include <memory>
+#include <optional>
 
 #include "core/interrupt.h"
 #include "core/parallel.h"
@@ -75,11 +76,14 @@ class Loop {
  private:
   void continue_from(const RenderResult& before);
   void replay();
-  void trace_pass(std::uint64_t pass);
-  void trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t first, std::size_t count);
+  // These return whether the pass is still wanted.
+  [[nodiscard]] bool trace_pass(std::uint64_t pass);
+  [[nodiscard]] bool trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t first,
+                                std::size_t count);
   void trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path, Slab& slab,
                   std::size_t slot, LayerSpace& layers, Trail* trail, std::uint64_t& rays) const;
-  void write_photons(std::uint64_t pass);
+  [[nodiscard]] bool write_photons(std::uint64_t pass);
+  void drop_pass(std::uint64_t pass);
   void write_vertices(Slab& slab);
   void emit(std::uint64_t pass, std::uint16_t camera, std::size_t count);
   void wait_for_output();
@@ -104,6 +108,12 @@ class Loop {
   Clock::time_point start_ = Clock::now();
   core::Progress* progress_ = nullptr;
   RenderResult result_;
+  // What result_ had of this before the pass of which it got a part.
+  struct Whole {
+    std::uint64_t pass, non_finite;
+    std::vector<film::Film> films;  // empty where no picture is wanted
+  };
+  std::optional<Whole> whole_;
   // Two slabs in turn: one is traced while the other is written. The future comes last, so that it
   // is waited for before anything it uses goes.
   std::array<std::unique_ptr<Slab>, 2> slabs_;
@@ -160,7 +170,10 @@ RenderResult Loop::run() {
   progress_ = &progress;
   const std::uint64_t total = settings_.total_passes();
   while (result_.passes < first_pass_ + settings_.passes) {
-    trace_pass(result_.passes);
+    if (!trace_pass(result_.passes)) {
+      drop_pass(result_.passes);
+      break;
+    }
     ++result_.passes;
     result_.out_of_time = seconds_since(start_) >= settings_.time_limit;
     if (core::interrupted() || result_.out_of_time) break;
@@ -176,27 +189,40 @@ RenderResult Loop::run() {
   return std::move(result_);
 }
 
-void Loop::trace_pass(std::uint64_t pass) {
+// What the file has of it is cut off where the writer ends.
+void Loop::drop_pass(std::uint64_t pass) {
+  wait_for_output();
+  paths_done_ = pass * paths_a_pass_;
+  if (!whole_ || whole_->pass != pass) return;
+  result_.non_finite = whole_->non_finite;
+  if (!whole_->films.empty()) result_.films = std::move(whole_->films);
+}
+
+bool Loop::trace_pass(std::uint64_t pass) {
   std::uint64_t rays = 0;
   const auto made = integrator_.for_pass(lights_, pass - first_pass_, rays);
   rays_ += rays;
   tracer_ = made != nullptr ? made.get() : &integrator_;
-  if (writer_ != nullptr && settings_.integrator.photons > 0) write_photons(pass);
+  if (core::overdue()) return false;
+  const bool photons = writer_ != nullptr && settings_.integrator.photons > 0;
+  if (photons && !write_photons(pass)) return false;
   for (std::size_t camera = 0; camera < views_.size(); ++camera) {
     const std::size_t pixels = views_[camera].pixels();
     for (std::size_t first = 0; first < pixels; first += slab_) {
       const std::size_t count = std::min(slab_, pixels - first);
-      trace_slab(pass, static_cast<std::uint16_t>(camera), first, count);
+      if (!trace_slab(pass, static_cast<std::uint16_t>(camera), first, count)) return false;
       emit(pass, static_cast<std::uint16_t>(camera), count);
     }
   }
+  return true;
 }
 
-void Loop::trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t first,
+bool Loop::trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t first,
                       std::size_t count) {
   // In steps that keep every thread busy for a while, so that progress moves within a slab.
   const std::size_t step = std::max<std::size_t>(64, 32 * core::thread_count()) * kGrain;
   Slab& slab = *slabs_[current_];
+  std::atomic<bool> dropped{false};
   for (std::size_t begin = 0; begin < count; begin += step) {
     const std::size_t size = std::min(step, count - begin);
     core::parallel_for(size, kGrain, [&](std::size_t from, std::size_t to) {
@@ -207,19 +233,24 @@ void Loop::trace_slab(std::uint64_t pass, std::uint16_t camera, std::size_t firs
           writer_ != nullptr && settings_.integrator.vertices > 0 ? &trail : nullptr;
       for (std::size_t i = begin + from; i < begin + to; ++i) {
         trace_path(pass, camera, first + i, slab, i, layers, wanted, rays);
+        // Behind each path, since a walk in it may have ended for this.
+        if (core::overdue()) dropped = true;
+        if (dropped) break;
       }
       rays_ += rays;
     });
+    if (dropped) return false;
     paths_done_ += size;
     if (settings_.on_progress) {
       settings_.on_progress(paths_done_, settings_.total_passes() * paths_a_pass_);
     }
     const double rate =
         static_cast<double>(rays_) / std::max(1e-9, seconds_before_ + seconds_since(start_));
-    progress_->advance(paths_done_, settings_.total_passes() * paths_a_pass_,
-                       fmt::format("{:.2f} M rays/s{}", rate / 1e6,
-                                   core::interrupted() ? ", ending after this pass" : ""));
+    progress_->advance(
+        paths_done_, settings_.total_passes() * paths_a_pass_,
+        fmt::format("{:.2f} M rays/s{}", rate / 1e6, core::interrupted() ? ", ending" : ""));
   }
+  return true;
 }
 
 void Loop::trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path, Slab& slab,
@@ -266,7 +297,7 @@ void Loop::trace_path(std::uint64_t pass, std::uint16_t camera, std::size_t path
 }
 
 // The photons of a pass, which may be more than fit into memory at once.
-void Loop::write_photons(std::uint64_t pass) {
+bool Loop::write_photons(std::uint64_t pass) {
   const std::uint64_t paths = settings_.integrator.photons;
   const std::size_t table = settings_.integrator.vertices > 0 ? 2 : 1;
   for (std::uint64_t first = 0; first < paths; first += kPhotonSlab) {
@@ -275,9 +306,11 @@ void Loop::write_photons(std::uint64_t pass) {
         trace_photon_rows(*integrator_.light_transport(), space_, lights_, pass - first_pass_,
                           paths, {first, std::min(kPhotonSlab, paths - first)}, rays);
     rays_ += rays;
+    if (core::overdue()) return false;
     wait_for_output();
     append_rows<PhotonRow>(*writer_, table, rows, photon_columns());
   }
+  return true;
 }
 
 void Loop::write_vertices(Slab& slab) {
@@ -293,7 +326,13 @@ void Loop::emit(std::uint64_t pass, std::uint16_t camera, std::size_t count) {
   Slab& slab = *slabs_[current_];
   current_ ^= 1;
   const bool ends_pass = paths_done_ == (pass + 1) * paths_a_pass_;
-  auto work = [this, &slab, camera, count, ends_pass, done = done_now()]() mutable {
+  const bool begins_pass = paths_done_ - count == pass * paths_a_pass_ && !ends_pass;
+  auto work = [this, &slab, pass, camera, count, begins_pass, ends_pass,
+               done = done_now()]() mutable {
+    if (begins_pass) {
+      whole_ = {pass, result_.non_finite, {}};
+      if (settings_.replay) whole_->films = result_.films;
+    }
     result_.non_finite += slab.records.add_to(result_.films[camera], count, settings_.shade_rate);
     if (writer_ == nullptr) return;
     writer_->append(count, slab.records.columns(channels_));

@@ -80,7 +80,8 @@ struct FrameOf {
 //   global  the path's number in the whole file is its index in one sequence, whose first two
 //           dimensions are the image plane.
 // `writer`, opened with make_head(), may be null. It gets every record in path order, with one
-// commit per pass, and is closed unless ^C ended the loop. Where it resumes a file, the loop goes
+// commit per pass, and is closed unless ^C ended the loop; a pass that is not whole a second after
+// that is dropped, and is in no picture. Where it resumes a file, the loop goes
 // on behind the file's last pass, with the same records and pictures as without the interruption;
 // it then throws what resume_point() throws. Of a sequence it renders one frame, whose passes are
 // those with the numbers from frame * passes on of every sequence of numbers: so a frame has the same

@@ -1,7 +1,6 @@
 // A loaded scene: plain data that the loaders fill and the light transport reads.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -222,12 +221,6 @@ struct Scene {
   Shutter shutter;  // around those of all cameras; rays have time 0 where it opens, 1 at its end
   Space space;
   Space wanted;  // where `exact` is set: the space in which the scene must be loaded instead
-
-  // Whether paths can be scattered between the surfaces.
-  [[nodiscard]] bool has_volumes() const {
-    const auto is_volume = [](const Material& m) { return m.kind == MaterialKind::volume; };
-    return medium != kNone || std::any_of(materials.begin(), materials.end(), is_volume);
-  }
 };
 
 }  // namespace psf::render

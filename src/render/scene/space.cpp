@@ -27,9 +27,6 @@ constexpr double kFarthest = 0x1p40;
 // A shape, or the positions of a dump, of fewer steps of a float have lost their form.
 constexpr double kStepsOfShape = 64, kStepsOfDump = 4096;
 
-// In the scene's space; its square, times a distance as small, is a float with all digits.
-constexpr double kLeastShape = 0x1p-32;
-
 // That a warning is about.
 struct OddShapes {
   const char* what;
@@ -166,7 +163,7 @@ void note_lost_digits(const std::string& path, Scene& scene) {
   OddShapes tiny{"so small beside the scene that it may not be seen"};
   const auto check = [&](const char* kind, const std::string& name, double across, double reach) {
     for (OddShapes* which : {across < kStepsOfShape * float_step(reach) ? &small : nullptr,
-                             across < kLeastShape ? &tiny : nullptr}) {
+                             across < double{kLeastLength} ? &tiny : nullptr}) {
       if (which == nullptr || which->count++ > 0) continue;
       which->first = fmt::format("{} {}, {:.3g} across, {:.3g} from the middle", kind, name,
                                  std::ldexp(across, scene.space.exponent),

@@ -5,6 +5,9 @@
 
 namespace psf::render {
 
+// In a scene's space: the square of a length, times a length as small, is a float with all digits.
+constexpr float kLeastLength = 0x1p-32f;
+
 // Floats have 24 bits. In a scene far from the origin they could not tell the scene's parts apart,
 // and the squares of huge or tiny lengths do not fit in floats. So such a scene is loaded around an
 // origin of its own and in a unit of its own, the world's unit times a power of two. Pictures are

@@ -17,6 +17,10 @@ namespace {
 // coordinates.
 constexpr double kFlat = 1e-7;
 
+// In the scene's space: Embree divides by the squares of segments of curves, and takes those of
+// less than 1e-18 for something else.
+constexpr double kShortest = 0x1p-23;
+
 bool is_flat(const Imath::V3d& a, const Imath::V3d& b, const Imath::V3d& c) {
   const Imath::V3d u = b - a, v = c - a, w = c - b;
   const double longest_sq = std::max({u.length2(), v.length2(), w.length2()});
@@ -214,6 +218,16 @@ class Validation {
     for (const std::uint32_t segment : curves.segments) {
       if (segment + std::size_t{1} >= curves.points.size())
         say(fmt::format("a segment begins at point {} of {}", segment, curves.points.size()));
+      const CurvePoint &from = curves.points[segment], &to = curves.points[segment + 1];
+      const double length = (Imath::V3d(to.position) - Imath::V3d(from.position)).length();
+      // One ball within the other is no matter.
+      if (length >= kShortest || length <= std::abs(double{to.radius} - double{from.radius}))
+        continue;
+      const auto world = [&](double local) { return std::ldexp(local, scene_.space.exponent); };
+      say(
+          fmt::format("the segment from point {} is {:.3g} long, {:.3g} is the least at the size "
+                      "of the scene; leave points out, or ask for fewer `segments`",
+                      segment, world(length), world(kShortest)));
     }
     const Material& material = scene_.materials[static_cast<std::size_t>(curves.material)];
     if (material.kind == MaterialKind::glass || !is_black(material.emission)) {

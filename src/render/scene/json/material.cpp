@@ -1,4 +1,6 @@
 // Materials of the JSON scene file, and the names by which shapes find them.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "render/scene/json/parts.h"
@@ -7,23 +9,58 @@ namespace psf::render {
 
 namespace {
 
+int read_picture(const JsonCursor& json, JsonLoad& load, const Material& material,
+                 std::string_view key, TextureUse use) {
+  const auto file = json.find(key);
+  if (!file) return kNone;
+  return load.textures.load(file->file(), file->text(), use,
+                            [&] { return file->where() + ": material \"" + material.name + "\""; });
+}
+
+// For a key that says how much of another one there is.
+void want_beside(const JsonCursor& json, const char* key, const char* other) {
+  const auto found = json.find(key);
+  if (found && !json.find(other))
+    found->fail(fmt::format("does nothing without \"{}\"; add one, or leave it out", other));
+}
+
 void read_pictures(const JsonCursor& json, JsonLoad& load, Material& material) {
   const auto texture = [&](std::string_view key, TextureUse use) {
-    const auto file = json.find(key);
-    if (!file) return kNone;
-    return load.textures.load(file->file(), file->text(), use, [&] {
-      return file->where() + ": material \"" + material.name + "\"";
-    });
+    return read_picture(json, load, material, key, use);
   };
   material.reflectance_texture = texture("reflectance_map", TextureUse::reflectance);
   material.emission_texture = texture("emission_map", TextureUse::radiance);
   material.roughness_metalness_texture = texture("roughness_metalness_map", TextureUse::numbers);
   material.opacity_texture = texture("opacity_map", TextureUse::opacity);
   material.normal_texture = texture("normal_map", TextureUse::numbers);
+  want_beside(json, "normal_scale", "normal_map");
   if (const auto s = json.find("normal_scale")) material.normal_scale = s->number(kNonNegative);
   material.bump_texture = texture("bump_map", TextureUse::numbers);
+  want_beside(json, "bump_height", "bump_map");
   if (json.find("bump_map"))
     material.bump_height = load.scene.space.local_length(json.at("bump_height").real());
+}
+
+// The second coat, above that of the kind.
+void read_clearcoat(const JsonCursor& json, JsonLoad& load, Material& material) {
+  for (const char* key :
+       {"clearcoat", "clearcoat_map", "clearcoat_roughness", "clearcoat_roughness_map"}) {
+    const auto found = json.find(key);
+    if (found && material.kind != MaterialKind::coat)
+      found->fail("only materials of the kind coat have a clear coat; leave it out");
+  }
+  const char* const there = json.find("clearcoat_map") ? "clearcoat_map" : "clearcoat";
+  want_beside(json, "clearcoat_roughness", there);
+  want_beside(json, "clearcoat_roughness_map", there);
+  // A picture is shown as it is, where nothing else is said.
+  const auto share = [&](const char* key, const char* map, float& value, int& texture) {
+    texture = read_picture(json, load, material, map, TextureUse::numbers);
+    if (json.find(map)) value = 1;
+    if (const auto found = json.find(key)) value = found->number(kUnitRange);
+  };
+  share("clearcoat", "clearcoat_map", material.clearcoat, material.clearcoat_texture);
+  share("clearcoat_roughness", "clearcoat_roughness_map", material.clearcoat_roughness,
+        material.clearcoat_roughness_texture);
 }
 
 // Light passes the boundary of a medium by its own laws.
@@ -73,7 +110,11 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
                    "normal_map",
                    "normal_scale",
                    "bump_map",
-                   "bump_height"});
+                   "bump_height",
+                   "clearcoat",
+                   "clearcoat_map",
+                   "clearcoat_roughness",
+                   "clearcoat_roughness_map"});
   Material material;
   const JsonCursor name = json.at("name");
   material.name = name.text();
@@ -105,6 +146,7 @@ void read_material(const JsonCursor& json, JsonLoad& load) {
   if (json.find("emission_map")) material.emission = Rgb(1);
   if (const auto e = json.find("emission")) material.emission = e->rgb(kNonNegative);
 
+  read_clearcoat(json, load, material);
   read_pictures(json, load, material);
   load.scene.materials.push_back(std::move(material));
 }
