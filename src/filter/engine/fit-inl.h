@@ -141,7 +141,7 @@ HWY_INLINE void moments_of_found(const Tree& tree, const FitSources& sources, co
         f[k] = hn::IfThenElseZero(lanes, axes[k].dot(k < 2 ? x : y));
         sums.add(k, f[k]);
         for (std::size_t l = 0; l <= k; ++l)
-          sums.add(kFeatures + k * (k + 1) / 2 + l, hn::Mul(f[k], f[l]));
+          sums.add(kFeatures + product_at(k, l), hn::Mul(f[k], f[l]));
       }
       const Parts parts(lanes);
       const VD y_sq = hn::Set(kDD, sources.luminance_sq(0)[place]);
@@ -178,10 +178,10 @@ HWY_INLINE void add_weighted(const Tree& tree, const FitSources& sources, const 
       for (VD& part : sum) part = hn::Zero(kDD);
     }
     const auto add = [&](M lanes, std::size_t place) HWY_ATTR {
-      const V bent =
+      const V along_slope =
           hn::Add(by_place.dot(away.in_place(place)), by_facing.dot(away.in_facing(place)));
       VD weight[kParts];
-      promote(hn::IfThenElseZero(lanes, hn::Sub(at_mean, bent)), weight);
+      promote(hn::IfThenElseZero(lanes, hn::Sub(at_mean, along_slope)), weight);
       const double* value = values.values(place / kWidth) + place % kWidth;
       for (std::size_t c = 0; c < 3; ++c) {
         const VD one = hn::Set(kDD, value[c * kWidth]);
