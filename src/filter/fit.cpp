@@ -12,32 +12,28 @@ constexpr float kNormalScale = 5;
 // its inverse, in float.
 constexpr double kLeastRidge = 1e-2;
 
-constexpr std::size_t at(std::size_t row, std::size_t column) {
-  return row * (row + 1) / 2 + column;
-}
-
-// Solves matrix x = right by its decomposition into L D L^T. `matrix`: by at(); its eigenvalues are
-// at least `least` but for rounding.
+// Solves matrix x = right by its decomposition into L D L^T. `matrix`: by product_at(); its
+// eigenvalues are at least `least` but for rounding.
 std::array<double, kFeatures> solve(std::array<double, kFeatureProducts> matrix,
                                     std::array<double, kFeatures> right, double least) {
   std::array<double, kFeatures> inverse;  // of D
   for (std::size_t k = 0; k < kFeatures; ++k) {
-    double pivot = matrix[at(k, k)];
+    double pivot = matrix[product_at(k, k)];
     for (std::size_t l = 0; l < k; ++l) {
-      double& below = matrix[at(k, l)];  // L D, then L
+      double& below = matrix[product_at(k, l)];  // L D, then L
       for (std::size_t m = 0; m < l; ++m)
-        below -= matrix[at(k, m)] * matrix[at(m, m)] * matrix[at(l, m)];
+        below -= matrix[product_at(k, m)] * matrix[product_at(m, m)] * matrix[product_at(l, m)];
       const double scaled = below;
       below *= inverse[l];
       pivot -= scaled * below;
       right[k] -= below * right[l];
     }
-    matrix[at(k, k)] = std::max(pivot, least);
-    inverse[k] = 1 / matrix[at(k, k)];
+    matrix[product_at(k, k)] = std::max(pivot, least);
+    inverse[k] = 1 / matrix[product_at(k, k)];
   }
   for (std::size_t k = kFeatures; k-- > 0;) {
     right[k] *= inverse[k];
-    for (std::size_t l = k + 1; l < kFeatures; ++l) right[k] -= matrix[at(l, k)] * right[l];
+    for (std::size_t l = k + 1; l < kFeatures; ++l) right[k] -= matrix[product_at(l, k)] * right[l];
   }
   return right;
 }
@@ -64,7 +60,7 @@ void FitMoments::add(const std::array<double, kFeatures>& f, double y) {
   luminance_sq += y * y;
   for (std::size_t k = 0; k < kFeatures; ++k) {
     sum[k] += f[k];
-    for (std::size_t l = 0; l <= k; ++l) product[at(k, l)] += f[k] * f[l];
+    for (std::size_t l = 0; l <= k; ++l) product[product_at(k, l)] += f[k] * f[l];
   }
 }
 
@@ -97,8 +93,9 @@ Fit fit_of(const FitMoments& moments) {
   for (std::size_t k = 0; k < kFeatures; ++k) mean_feature[k] = moments.sum[k] / n;
   std::array<double, kFeatureProducts> scatter = moments.product;
   for (std::size_t k = 0; k < kFeatures; ++k) {
-    for (std::size_t l = 0; l <= k; ++l) scatter[at(k, l)] -= moments.sum[k] * mean_feature[l];
-    scatter[at(k, k)] += ridge;
+    for (std::size_t l = 0; l <= k; ++l)
+      scatter[product_at(k, l)] -= moments.sum[k] * mean_feature[l];
+    scatter[product_at(k, k)] += ridge;
   }
   Fit fit{solve(scatter, mean_feature, ridge)};
   for (std::size_t k = 0; k < kFeatures; ++k) fit.at_mean += fit.slope[k] * mean_feature[k];

@@ -15,6 +15,10 @@ namespace psf::filter {
 
 inline constexpr std::size_t kFeatures = 4;
 inline constexpr std::size_t kFeatureProducts = kFeatures * (kFeatures + 1) / 2;
+// Where the product of features k and l <= k is, among all of them.
+[[nodiscard]] constexpr std::size_t product_at(std::size_t k, std::size_t l) {
+  return k * (k + 1) / 2 + l;
+}
 
 // The features of source j as record i sees it: f_k = (x_j - x_i) . place[k] for k < 2, and
 // f_(2 + k) = (y_j - y_i) . facing[k], where y is facing().
@@ -31,12 +35,12 @@ struct FitMoments {
   double count = 0;
   double luminance = 0, luminance_sq = 0;  // of what is averaged
   std::array<double, kFeatures> sum{};
-  std::array<double, kFeatureProducts> product{};  // f_k f_l, l <= k, is number k (k + 1) / 2 + l
+  std::array<double, kFeatureProducts> product{};  // f_k f_l at product_at(k, l)
 
   void add(const std::array<double, kFeatures>& f, double y);
 };
 
-// The fit is the mean, and beside it the sum over j of weight(f_ij) c_j.
+// [fit] is the mean plus the sum over j of weight(f_ij) c_j.
 struct Fit {
   std::array<double, kFeatures> slope{};
   double at_mean = 0;
@@ -45,14 +49,14 @@ struct Fit {
 };
 [[nodiscard]] Fit fit_of(const FitMoments& moments);
 
-// The share of the way from the mean to the fit that is gone, by colour, so that light stays at
-// least 0. It is found for the whole light and is the same for its layers, which so add up as before.
+// How far from the mean to the fit each colour may go, from 0 to 1, so that light stays at least 0.
+// It is found for the whole light and is the same for its layers, which so add up as before.
 class FitShares {
  public:
-  // `beside`: what the fit has beside the mean.
+  // `beside`: fit minus mean.
   FitShares(const Sum& mean, const Sum& beside)
       : x_(share(mean.x, beside.x)), y_(share(mean.y, beside.y)), z_(share(mean.z, beside.z)) {}
-  // Of what the shares are of, or of a layer.
+  // The result for the whole light or for a layer of it.
   [[nodiscard]] Rgb taken(const Sum& mean, const Sum& beside) const {
     return {taken(mean.x, beside.x, x_), taken(mean.y, beside.y, y_), taken(mean.z, beside.z, z_)};
   }

@@ -27,9 +27,12 @@ AblationSheet::AblationSheet(const run::Dump& dump, const AblateRequest& request
 
 std::vector<std::string> AblationSheet::head(const run::Dump& dump) const {
   const std::string dump_name = file_name(dump.reader().path());
-  const std::string facts =
+  std::string facts =
       fmt::format("estimator {}, r0 {}, delta {:.4g}", filter::info(parameters_.estimator).name,
                   filter::find_parameter("r0").text(parameters_), parameters_.radius.delta);
+  if (parameters_.fit != filter::BallFit::mean) {
+    facts += ", fit " + filter::find_parameter("fit").text(parameters_);
+  }
   std::vector<std::string> lines = {dump.metadata().scene.empty() ? dump_name
                                                                   : dump.metadata().scene};
   lines.push_back(

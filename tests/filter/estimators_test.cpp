@@ -25,6 +25,9 @@ TEST_CASE("Estimators have names of their own, and memory of their own on top of
   CHECK(bytes(Estimator::adaptive) == bytes(Estimator::average) + 24);
   CHECK(bytes(Estimator::hash) == 37 + 172);
   CHECK(bytes(Estimator::density) == 37 + 58);
+  filter::Parameters fit;
+  fit.fit = filter::BallFit::linear;
+  CHECK(filter::memory_per_record(fit) == bytes(Estimator::average) + 20);  // normal, luminance
 }
 
 TEST_CASE("A channel that only the estimator compares must be finite too") {

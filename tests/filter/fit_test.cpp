@@ -331,9 +331,14 @@ TEST_CASE("A record whose normal is not finite has no part in a fit, and is coun
   for (const std::size_t i : {17u, 40u, 300u}) c.set.normal[i] = Vec3(tests::kNan, 0, 1);
   for (const EngineKind engine : tests::kEngines) {
     const Estimates fit = c.filtered(engine);
+    std::uint64_t vertices = 0;
     for (const std::size_t i : {17u, 40u, 300u}) {
-      CHECK((fit.roles[i] == filter::Role::left_out || (c.set.flags[i] & 1) == 0));
+      const bool has_vertex = (c.set.flags[i] & 1) != 0;
+      CHECK((fit.roles[i] == filter::Role::left_out || !has_vertex));
+      vertices += has_vertex ? 1u : 0u;
     }
+    CHECK(vertices > 0);
+    CHECK(fit.statistics.left_out == vertices);
     for (std::size_t i = 0; i < c.set.size(); ++i) {
       for (int k = 0; k < 3; ++k) REQUIRE(std::isfinite(fit.c_bar[i][k]));
     }

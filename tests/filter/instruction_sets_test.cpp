@@ -55,6 +55,12 @@ std::vector<EngineCase> cases() {
       all.push_back(fit);
     }
   }
+  // Balls with whole nodes in their middle, whose last parent has single sources too.
+  for (const float r : {0.15f, 0.2f, 0.25f, 0.3f}) {
+    EngineCase fit = noisy_case(20'000, 0, r);
+    fit.parameters.fit = filter::BallFit::linear;
+    all.push_back(fit);
+  }
   EngineCase disk = noisy_case(3000, 1, 0.2f);
   disk.parameters.estimator = filter::Estimator::disk;
   all.push_back(disk);

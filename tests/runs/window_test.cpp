@@ -389,6 +389,9 @@ TEST_CASE("What does not go with other frames is refused by name") {
   CHECK(message([](FilterRequest& run) { run.parameters.weights.plane = 1.0f; }).find("`plane`") ==
         0);
   CHECK(message([](FilterRequest& run) { run.window.terms.relit = 0; }).find("`relit`") == 0);
+  CHECK(message([](FilterRequest& run) {
+          run.parameters.fit = filter::BallFit::linear;
+        }).find("`fit`") == 0);
 }
 
 }  // namespace

@@ -152,11 +152,11 @@ class TreeEngine final : public Engine {
       if (packet.count[k] == 0) continue;
       std::optional<FitShares> shares;
       for (std::size_t v = 0; v < all.size(); ++v) {
-        Sum mean, bent = colour(beside + 3 * kWidth * v + k);
+        Sum mean, difference = colour(beside + 3 * kWidth * v + k);
         mean.add(colour(sums + 3 * kWidth * v + k), 1.0 / packet.count[k]);
-        if (is_own_apart(packet, k, i)) bent.add(all[v].values[i], double{of.at_mean[k]});
-        if (!shares) shares.emplace(mean, bent);
-        all[v].out[i] = shares->taken(mean, bent);
+        if (is_own_apart(packet, k, i)) difference.add(all[v].values[i], double{of.at_mean[k]});
+        if (!shares) shares.emplace(mean, difference);
+        all[v].out[i] = shares->taken(mean, difference);
       }
     }
   }

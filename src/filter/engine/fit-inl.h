@@ -12,11 +12,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace psf::filter::engine::HWY_NAMESPACE {
 
-// Calls visit(lanes, place) for the sources of the queries in the lanes from `lane` on: those below
-// whole nodes first, in the order in which they were found.
+// Call visit(lanes, place) for the sources of the queries in the lanes from `lane` on, in the order
+// in which they were found: those below whole nodes, which every query takes, and the others.
 template <class Visit>
-HWY_INLINE void each_found(const Tree& tree, const Found& found, std::size_t lane,
-                           const Visit& visit) {
+HWY_INLINE void each_below_nodes(const Tree& tree, const Found& found, const Visit& visit) {
   const M all = hn::FirstN(kD, kLanes);
   for (const auto& [level, family, bits, count] : found.nodes) {
     for (std::uint32_t left = bits; left != 0; left &= left - 1) {
@@ -26,6 +25,9 @@ HWY_INLINE void each_found(const Tree& tree, const Found& found, std::size_t lan
       for (std::size_t place = first; place < end; ++place) visit(all, place);
     }
   }
+}
+template <class Visit>
+HWY_INLINE void each_single(const Found& found, std::size_t lane, const Visit& visit) {
   for (const auto& [place, lanes] : found.sources[lane / kLanes]) visit(mask_of(lanes), place);
 }
 
@@ -79,9 +81,10 @@ HWY_INLINE void promote(V values, VD (&parts)[kParts]) {
   }
 }
 
-// Sums of floats that stay exact over many sources: what lies below a parent is added up in float, and
-// such sums in double. Parents come one after the other, whatever the width of a vector, so the
-// bytes are the same.
+// Sums of floats that stay exact over many sources: what lies below a parent is added up in float,
+// and such sums in double. Call finish() between whole nodes and single sources: the first of these
+// may lie below the last parent of those or not, by lane, and bytes would depend on the width of a
+// vector.
 class MomentSums {
  public:
   HWY_INLINE MomentSums() {
@@ -130,7 +133,7 @@ HWY_INLINE void moments_of_found(const Tree& tree, const FitSources& sources, co
     MomentSums sums;
     VD luminance_sq[kParts];
     for (VD& s : luminance_sq) s = hn::Zero(kDD);
-    each_found(tree, found, lane, [&](M lanes, std::size_t place) HWY_ATTR {
+    const auto add = [&](M lanes, std::size_t place) HWY_ATTR {
       sums.begin(place);
       const Triple x = away.in_place(place), y = away.in_facing(place);
       V f[kFeatures];
@@ -138,14 +141,17 @@ HWY_INLINE void moments_of_found(const Tree& tree, const FitSources& sources, co
         f[k] = hn::IfThenElseZero(lanes, axes[k].dot(k < 2 ? x : y));
         sums.add(k, f[k]);
         for (std::size_t l = 0; l <= k; ++l)
-          sums.add(kFeatures + k * (k + 1) / 2 + l, hn::Mul(f[k], f[l]));
+          sums.add(kFeatures + product_at(k, l), hn::Mul(f[k], f[l]));
       }
       const Parts parts(lanes);
       const VD y_sq = hn::Set(kDD, sources.luminance_sq(0)[place]);
       for (std::size_t part = 0; part < kParts; ++part) {
         luminance_sq[part] = add_where(parts.mask[part], luminance_sq[part], y_sq);
       }
-    });
+    };
+    each_below_nodes(tree, found, add);
+    sums.finish();
+    each_single(found, lane, add);
     sums.finish();
     for (std::size_t k = 0; k < kLanes; ++k) {
       for (std::size_t f = 0; f < kFeatures; ++f) fit.sum[f][lane + k] = sums.whole(f)[k];
@@ -171,11 +177,11 @@ HWY_INLINE void add_weighted(const Tree& tree, const FitSources& sources, const 
     for (auto& sum : total) {
       for (VD& part : sum) part = hn::Zero(kDD);
     }
-    each_found(tree, found, lane, [&](M lanes, std::size_t place) HWY_ATTR {
-      const V bent =
+    const auto add = [&](M lanes, std::size_t place) HWY_ATTR {
+      const V along_slope =
           hn::Add(by_place.dot(away.in_place(place)), by_facing.dot(away.in_facing(place)));
       VD weight[kParts];
-      promote(hn::IfThenElseZero(lanes, hn::Sub(at_mean, bent)), weight);
+      promote(hn::IfThenElseZero(lanes, hn::Sub(at_mean, along_slope)), weight);
       const double* value = values.values(place / kWidth) + place % kWidth;
       for (std::size_t c = 0; c < 3; ++c) {
         const VD one = hn::Set(kDD, value[c * kWidth]);
@@ -183,7 +189,9 @@ HWY_INLINE void add_weighted(const Tree& tree, const FitSources& sources, const 
           total[c][part] = hn::Add(total[c][part], hn::Mul(weight[part], one));
         }
       }
-    });
+    };
+    each_below_nodes(tree, found, add);
+    each_single(found, lane, add);
     for (std::size_t c = 0; c < 3; ++c) {
       for (std::size_t part = 0; part < kParts; ++part) {
         hn::Store(total[c][part], kDD, out + c * kWidth + lane + part * kDoubles);

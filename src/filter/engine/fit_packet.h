@@ -51,8 +51,8 @@ struct FitPacket {
 
   void set_axes(const Records& records, std::span<const std::uint32_t> queries,
                 std::span<const float> radius);
-  // The fit of the query in lane k; none where `count` is 0. The other moments are `count`, and `luminance` of what is
-  // averaged.
+  // Sets the weights of the query in lane k; without sources, to 0. `count`, `luminance`: the
+  // moments that are not here.
   void set_fit(std::size_t k, double count, double luminance);
 };
 
