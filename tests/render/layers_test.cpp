@@ -52,7 +52,7 @@ Traced traced(const Integrator& by, const Ray& from, std::uint64_t index) {
   result.unfiltered.assign(by.layers().size(), Rgb(0));
   Sampler s = sampler(SamplerKind::sobol, 0, index);
   std::uint64_t rays = 0;
-  result.record = by.trace(from, s, true, rays, {result.contribution, result.unfiltered});
+  result.record = by.trace(from, s, true, rays, {{result.contribution, result.unfiltered}});
   return result;
 }
 
