@@ -199,7 +199,7 @@ TEST_CASE("Photons: the layers of the light add up to it, by light, bounces and 
     std::vector<Rgb> c(tracer->layers().size(), Rgb(0)), u(c);
     Sampler s(numbers, 0, k);
     const PathRecord record =
-        tracer->trace(ray({0, 0, 0.3f}, {x, -0.9f, -0.9f}), s, true, rays, {c, u});
+        tracer->trace(ray({0, 0, 0.3f}, {x, -0.9f, -0.9f}), s, true, rays, {{c, u}});
     Rgb sum_c(0), sum_u(0);
     for (const Rgb& layer : c) sum_c += layer;
     for (const Rgb& layer : u) sum_u += layer;

@@ -120,7 +120,7 @@ TEST_CASE("no file of a library includes a folder above its own") {
       {"render", {"sample", "scene", "accel", "light", "camera", "loop", "job"}}};
   for (const auto& [library, order] : layers) {
     const std::regex include("^#include \"" + library + "/([a-z]+)/");
-    const auto layer = [&](const std::string& folder) {
+    const auto layer = [&order = order](const std::string& folder) {
       return std::find(order.begin(), order.end(), folder) - order.begin();
     };
     std::size_t included = 0;
