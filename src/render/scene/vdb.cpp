@@ -28,7 +28,8 @@ auto reading(const std::string& path, Read read) {
   try {
     return read();
   } catch (const std::bad_alloc&) {
-    throw;
+    // Of a file that is cut off OpenVDB reads counts that are there by chance.
+    fail(path, "damaged, or too large for the memory");
   } catch (const std::exception& error) {
     fail(path, fmt::format("not a VDB file, or damaged ({})", error.what()));
   }

@@ -42,7 +42,8 @@ Mesh make_tuft(const Tuft& tuft) {
 
 std::vector<Imath::M44d> scatter(const Scatter& how) {
   Random random(how.seed);
-  const Imath::V2d start(random.unit(), random.unit());
+  const double start_y = random.unit();
+  const Imath::V2d start(random.unit(), start_y);
   constexpr double kStepX = 0.7548776662466927, kStepZ = 0.5698402909980532;
   std::vector<Imath::M44d> places;
   places.reserve(how.count);

@@ -9,7 +9,8 @@
 namespace psf::render {
 
 // The same numbers on every machine: integers are hashed, and directions need no more than products
-// and square roots, which are exact to the last bit everywhere.
+// and square roots, which are exact to the last bit everywhere. Numbers that belong together are drawn
+// in statements of their own, since compilers differ in the order of arguments; the last comes first.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(mix(seed + kGolden)) {}
@@ -22,8 +23,8 @@ class Random {
 
   [[nodiscard]] Imath::V2d in_disk() {
     for (;;) {
-      const Imath::V2d p(between(-1, 1), between(-1, 1));
-      if (p.x * p.x + p.y * p.y <= 1) return p;
+      const double y = between(-1, 1), x = between(-1, 1);
+      if (x * x + y * y <= 1) return {x, y};
     }
   }
   [[nodiscard]] Imath::V2d on_circle() {
@@ -35,7 +36,8 @@ class Random {
   }
   [[nodiscard]] Imath::V3d on_sphere() {
     for (;;) {
-      const Imath::V3d p(between(-1, 1), between(-1, 1), between(-1, 1));
+      const double z = between(-1, 1), y = between(-1, 1), x = between(-1, 1);
+      const Imath::V3d p(x, y, z);
       const double length_sq = p.x * p.x + p.y * p.y + p.z * p.z;
       if (length_sq > 1e-4 && length_sq <= 1) return p * (1 / std::sqrt(length_sq));
     }

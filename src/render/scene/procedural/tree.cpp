@@ -89,8 +89,9 @@ class Growth {
         turn = next_turn(turn, node.heading);
         const double out = k == pieces ? 0.45 : random_.between(0.9, 1.35);
         const V3d child = (node.heading + turn * out).normalized();
-        grow(node.place, child, length * random_.between(0.5, 0.68) * (1.15 - 0.5 * t),
-             node.radius * random_.between(0.5, 0.65), level + 1);
+        const double radius_there = node.radius * random_.between(0.5, 0.65);
+        const double length_there = length * random_.between(0.5, 0.68) * (1.15 - 0.5 * t);
+        grow(node.place, child, length_there, radius_there, level + 1);
       }
     }
   }
