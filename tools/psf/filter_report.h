@@ -186,6 +186,15 @@ inline void print_report(const FilterReport& report) {
   line("wrote", fmt::format("{}", fmt::join(report.written, ", ")));
 }
 
+inline nlohmann::ordered_json window_json(const FilterReport& report) {
+  nlohmann::ordered_json json;
+  for (const auto& [name, value] : run::describe(report.window)) json[name] = value;
+  json["found"] = report.outcome.window.found;
+  json["alike"] = report.outcome.window.alike;
+  json["orphans"] = report.outcome.window.orphans;
+  return json;
+}
+
 inline nlohmann::ordered_json to_json(const FilterReport& report) {
   using Json = nlohmann::ordered_json;
   const filter::Statistics& s = report.outcome.statistics;
@@ -242,12 +251,7 @@ inline nlohmann::ordered_json to_json(const FilterReport& report) {
   }
   if (report.vertex) json["vertex"] = to_text(*report.vertex);
   if (!report.frames.empty()) json["frames"] = report.frames;
-  if (report.window.width > 1) {
-    for (const auto& [name, value] : run::describe(report.window)) json["window"][name] = value;
-    json["window"]["found"] = report.outcome.window.found;
-    json["window"]["alike"] = report.outcome.window.alike;
-    json["window"]["orphans"] = report.outcome.window.orphans;
-  }
+  if (report.window.width > 1) json["window"] = window_json(report);
   json["layers"] = report.outcome.pictures.empty() ? std::vector<std::string>()
                                                    : report.outcome.pictures[0].light_layers();
   const bool counted = report.parameters.count_refusals;
