@@ -6,12 +6,9 @@ the sheet of psf flicker.
 
 import json
 import os
-import signal
 import subprocess
 import sys
 import tempfile
-import threading
-import time
 import unittest
 import warnings
 from pathlib import Path
@@ -19,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from support import PACKAGE, PROGRAMS, SAMPLES, assert_refused, content, run
+from support import PACKAGE, PROGRAMS, SAMPLES, assert_interrupted, assert_refused, content, run
 
 import psf
 
@@ -211,21 +208,7 @@ class Frames(unittest.TestCase):
         calls = (lambda: self.sequence.filter(window=3, block="2^6", r0="64px", no_weights=True),
                  lambda: psf.flicker(pictures * 200, pictures * 200))
         for call in calls:
-            ticks = []
-
-            def tick() -> None:
-                for _ in range(20):
-                    ticks.append(time.monotonic())
-                    time.sleep(0.01)
-                os.kill(os.getpid(), signal.SIGINT)
-
-            thread = threading.Thread(target=tick)
-            thread.start()
-            with self.assertRaises(KeyboardInterrupt):
-                while True:  # whatever the machine: it is at work when the signal comes
-                    call()
-            thread.join()
-            self.assertEqual(len(ticks), 20)
+            assert_interrupted(self, call)
             self.sequence.filter(3)  # and the next call works
 
     def test_the_example_runs(self) -> None:

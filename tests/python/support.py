@@ -1,8 +1,11 @@
 """What the tests of the package share: they are called as NAME_test.py PACKAGE PROGRAMS SAMPLE_DATA."""
 
 import os
+import signal
 import subprocess
 import sys
+import threading
+import time
 import unittest
 from collections.abc import Callable
 
@@ -32,3 +35,22 @@ def assert_refused(case: unittest.TestCase, call: Callable[[], object], code: in
     case.assertIn(text, str(raised.exception))
     case.assertNotIn("\n", str(raised.exception))
     case.assertNotIn("`", str(raised.exception))
+
+
+def assert_interrupted(case: unittest.TestCase, call: Callable[[], object]) -> None:
+    """^C ends the call, and other threads of Python run beside it."""
+    ticks = []
+
+    def tick() -> None:
+        for _ in range(20):
+            ticks.append(time.monotonic())
+            time.sleep(0.01)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    with case.assertRaises(KeyboardInterrupt):
+        while True:  # whatever the machine: it is at work when the signal comes
+            call()
+    thread.join()
+    case.assertEqual(len(ticks), 20)

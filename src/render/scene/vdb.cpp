@@ -22,7 +22,7 @@ using openvdb::FloatGrid;
   throw Error(ErrorCode::bad_input, path + ": " + problem);
 }
 
-// What OpenVDB throws, as one line; memory that is not there is told elsewhere.
+// What OpenVDB throws, as one line.
 template <class Read>
 auto reading(const std::string& path, Read read) {
   try {
