@@ -191,6 +191,11 @@ void check(const run::Dump& dump, const ExplainRequest& request) {
   if (request.parameters.fit != filter::BallFit::mean) {
     refuse("`fit`: only means can be explained, source by source; give `fit mean`");
   }
+  if (request.parameters.fireflies.kind != filter::FireflyRule::Kind::keep) {
+    refuse(
+        "`fireflies`: only what is averaged like any other can be explained; give `fireflies "
+        "keep`");
+  }
   const std::uint64_t last = dump.pass_bounds()[run::last_pass(dump, request.passes)];
   const std::uint64_t first = dump.pass_bounds()[request.passes.first];
   if (request.path) {

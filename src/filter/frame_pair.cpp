@@ -92,7 +92,7 @@ void FramePair::average(std::span<const std::vector<Rgb>> values, EngineKind eng
   std::vector<Averaged> all;
   for (std::size_t k = 0; k < values.size(); ++k) all.push_back({values[k], means[k]});
   Statistics unused;
-  make_engine(engine, problem)->apply(all, false, neighbors, unused);
+  make_engine(engine, problem)->apply(all, BallFit::mean, false, neighbors, unused);
 }
 
 }  // namespace psf::filter

@@ -46,6 +46,14 @@ std::uint64_t memory_per_record(const Parameters& parameters) {
   std::uint64_t bytes = kResult + kLists + kRadius + estimator.bytes;
   if (parameters.demodulate || parameters.iterations > 1) bytes += kVector;  // values to average
   if (parameters.fit == BallFit::linear) bytes += kVector + 2 * kWord;       // normals, luminances
+  if (parameters.fireflies.kind != FireflyRule::Kind::keep) {
+    bytes += 2 * kVector + kWord;  // values without what is apart, that, and what is kept
+  }
+  if (parameters.fireflies.kind == FireflyRule::Kind::spread) {
+    constexpr std::uint64_t kPlaces = 6 * kWord, kEnds = 2 * 8;
+    constexpr std::uint64_t kGifts = 8 * 2 * kWord;  // 8 of a query, more than any scene has had
+    bytes += kPlaces + kEnds + kGifts + tree_bytes(kVector + compared(parameters));
+  }
   if (!estimator.has_tree) return bytes;
   return bytes + tree_bytes(kVector + compared(parameters));  // with positions
 }
@@ -72,11 +80,12 @@ std::uint64_t memory_per_record_of_window(const Parameters& parameters, std::uin
 }
 
 std::uint64_t memory_per_layer(const Parameters& parameters) {
-  // The average, and what is averaged in place of the contribution.
-  constexpr std::uint64_t kValues = 2 * kVector;
+  // The average, what is averaged in place of the contribution, and what is given.
+  const bool apart = parameters.fireflies.kind != FireflyRule::Kind::keep;
+  const std::uint64_t values = (apart ? 3 : 2) * kVector;
   // Of engine/tree_sums.h: a source's, and its shares of its quad's, its group's and its parent's.
   constexpr std::uint64_t kSums = kSum + kSum / kQuad + (kSum + kGroup - 1) / kGroup + 1;
-  return kValues + (info(parameters.estimator).has_tree ? kSums : kVector);
+  return values + (info(parameters.estimator).has_tree ? kSums : kVector);
 }
 
 }  // namespace psf::filter

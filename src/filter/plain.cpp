@@ -20,8 +20,8 @@ constexpr std::size_t kPlainGrain = 256;  // queries a range
 class Worker {
  public:
   Worker(const Problem& problem, const search::Search& search, std::span<const Averaged> all,
-         bool count_refusals)
-      : p_(problem), search_(search), all_(all), count_refusals_(count_refusals) {}
+         BallFit fit, bool count_refusals)
+      : p_(problem), search_(search), all_(all), fit_(fit), count_refusals_(count_refusals) {}
 
   // Returns how many neighbours there were.
   std::uint32_t average(std::uint32_t i) {
@@ -48,7 +48,7 @@ class Worker {
       average_adopted(adopt(search_, p_, i), i, all_, counts);
       return 0;
     }
-    if (p_.fit == BallFit::linear && count > 1) {
+    if (fit_ == BallFit::linear && count > 1) {
       fit(i);
       return count;
     }
@@ -100,6 +100,7 @@ class Worker {
   const Problem& p_;
   const search::Search& search_;
   std::span<const Averaged> all_;
+  BallFit fit_;
   bool count_refusals_;
   std::vector<search::Neighbor> found_;
   std::vector<std::uint32_t> averaged_;                  // record numbers
@@ -117,12 +118,12 @@ class PlainEngine final : public Engine {
     search_ = search::make_search(search_of(kind), positions);
   }
 
-  void apply(std::span<const Averaged> all, bool count_refusals, std::span<std::uint32_t> neighbors,
-             Statistics& statistics) override {
+  void apply(std::span<const Averaged> all, BallFit fit, bool count_refusals,
+             std::span<std::uint32_t> neighbors, Statistics& statistics) override {
     std::vector<Statistics> parts(core::range_count(order_.size(), kPlainGrain));
     core::parallel_for(order_.size(), kPlainGrain, [&](std::size_t begin, std::size_t end) {
       core::throw_if_interrupted("no picture was written");
-      Worker worker(p_, *search_, all, count_refusals);
+      Worker worker(p_, *search_, all, fit, count_refusals);
       for (const std::uint32_t i : std::span(order_).subspan(begin, end - begin)) {
         neighbors[i] = worker.average(i);
       }

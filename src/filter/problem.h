@@ -23,7 +23,6 @@ struct Problem {
   std::span<const float> area;  // A_j of [disk]; empty: [average]
   // The sources are no queries, and a query without one in its ball gets 0: there are no orphans.
   bool sources_apart = false;
-  BallFit fit = BallFit::mean;
 };
 
 // What is averaged, and where the averages go, both by record number.
@@ -38,12 +37,12 @@ class Engine {
  public:
   virtual ~Engine() = default;
 
-  // One application of [average] or [disk] to everything in `all`, at least one, which shares the
+  // One application of [average], of [fit] or of [disk] to everything in `all`, at least one, which shares the
   // search: weights do not ask for values. For every query i it writes the average of the values of
   // the sources to out[i], the same bits whatever else is averaged, and the number of sources to
   // neighbors[i], 0 for an orphan. Adds its counts to `statistics`. The result is the same for any
   // number of threads. Throws Error{interrupted} on ^C.
-  virtual void apply(std::span<const Averaged> all, bool count_refusals,
+  virtual void apply(std::span<const Averaged> all, BallFit fit, bool count_refusals,
                      std::span<std::uint32_t> neighbors, Statistics& statistics) = 0;
 };
 

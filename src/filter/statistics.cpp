@@ -17,6 +17,9 @@ Statistics& Statistics::operator+=(const Statistics& other) {
   max_neighbors = std::max(max_neighbors, other.max_neighbors);
   orphans += other.orphans;
   orphans_unmatched += other.orphans_unmatched;
+  fireflies += other.fireflies;
+  light += other.light;
+  light_apart += other.light_apart;
   seconds_index += other.seconds_index;
   seconds_filter += other.seconds_filter;
   for (std::size_t k = 0; k < non_finite.size(); ++k) non_finite[k] += other.non_finite[k];

@@ -41,6 +41,11 @@ struct Statistics {
   std::uint64_t orphans = 0;            // queries without a source in their ball that passes
   std::uint64_t orphans_unmatched = 0;  // orphans for which no source passes the weights
 
+  // Of the fireflies of the rules spread and clamp, and the sums of luminance of all sources and of
+  // what was spread or dimmed.
+  std::uint64_t fireflies = 0;
+  double light = 0, light_apart = 0;
+
   double seconds_index = 0;   // roles, order, building the index
   double seconds_filter = 0;  // search, weights and sums
 

@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "filter/parameters/text.h"
+#include "filter/parameters/values.h"
 
 namespace psf::study {
 namespace {
@@ -32,6 +33,9 @@ std::vector<std::string> AblationSheet::head(const run::Dump& dump) const {
                   filter::find_parameter("r0").text(parameters_), parameters_.radius.delta);
   if (parameters_.fit != filter::BallFit::mean) {
     facts += ", fit " + filter::find_parameter("fit").text(parameters_);
+  }
+  if (parameters_.fireflies.kind != filter::FireflyRule::Kind::keep) {
+    facts += ", fireflies " + filter::to_text(parameters_.fireflies);
   }
   std::vector<std::string> lines = {dump.metadata().scene.empty() ? dump_name
                                                                   : dump.metadata().scene};

@@ -235,6 +235,9 @@ TEST_CASE("What cannot be explained is an error of the right kind") {
   FilterRequest fit = run;
   fit.parameters.fit = filter::BallFit::linear;
   CHECK(code_of(request_of(fit, 0, 0, 0)) == ErrorCode::usage);
+  FilterRequest fireflies = run;
+  fireflies.parameters.fireflies = {filter::FireflyRule::Kind::spread};
+  CHECK(code_of(request_of(fireflies, 0, 0, 0)) == ErrorCode::usage);
   CHECK(code_of(request_of(run, 0, 0, 10)) == ErrorCode::usage);
   CHECK(code_of(request_of(run, 1, 0, 0)) == ErrorCode::usage);
   CHECK(code_of(request_of(run, 0, 19, 9)) == ErrorCode::bad_input);

@@ -53,6 +53,9 @@ std::vector<EngineCase> cases() {
       EngineCase fit = noisy_case(3000, terms, r);
       fit.parameters.fit = filter::BallFit::linear;
       all.push_back(fit);
+      EngineCase spread = noisy_case(3000, terms, r);
+      spread.parameters.fireflies = {filter::FireflyRule::Kind::spread};
+      all.push_back(spread);
     }
   }
   // Balls with whole nodes in their middle, whose last parent has single sources too.

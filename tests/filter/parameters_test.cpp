@@ -87,6 +87,7 @@ TEST_CASE("Every parameter is read from the text that it has, and says what else
       {"estimator", {"average", "adaptive"}},
       {"agree", {"1.5", "2.5"}},
       {"fit", {"mean", "linear"}},
+      {"fireflies", {"keep", "clamp:4"}},
       {"search", {"flann", "brute"}}};
   REQUIRE(filter::parameter_table().size() == texts.size());
   for (const filter::Parameter& parameter : filter::parameter_table()) {
@@ -145,7 +146,7 @@ TEST_CASE("Every parameter is described, under the name of its option") {
         "visibility=on hit-distance=off plane=off direction=off material=off gloss=0.8 "
         "demodulate=off "
         "iterations=1 "
-        "sources=1/4 estimator=average agree=off fit=mean search=flann ");
+        "sources=1/4 estimator=average agree=off fit=mean fireflies=keep search=flann ");
 }
 
 TEST_CASE("Channels are asked for by the parameters that use them") {

@@ -392,6 +392,9 @@ TEST_CASE("What does not go with other frames is refused by name") {
   CHECK(message([](FilterRequest& run) {
           run.parameters.fit = filter::BallFit::linear;
         }).find("`fit`") == 0);
+  CHECK(message([](FilterRequest& run) {
+          run.parameters.fireflies = {filter::FireflyRule::Kind::spread};
+        }).find("`fireflies`") == 0);
 }
 
 }  // namespace

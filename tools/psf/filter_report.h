@@ -90,6 +90,20 @@ inline std::string alpha_text(const FilterReport& report) {
   return text;
 }
 
+// What became of fireflies.
+inline std::string fireflies_text(const FilterReport& report) {
+  const filter::Statistics& s = report.outcome.statistics;
+  const filter::FireflyRule& rule = report.parameters.fireflies;
+  if (s.fireflies == 0) return "none";
+  const std::string became = rule.kind == filter::FireflyRule::Kind::spread
+                                 ? "spread over distances of their own"
+                                 : "dimmed away";
+  return fmt::format("{}, {:.2g}% of the contributions; {:.2g}% of the light {}",
+                     core::with_commas(s.fireflies),
+                     100 * static_cast<double>(s.fireflies) / static_cast<double>(s.sources),
+                     s.light > 0 ? 100 * s.light_apart / s.light : 0.0, became);
+}
+
 // What of the records and photons is in no average.
 inline std::string left_out_text(const FilterReport& report) {
   const filter::Statistics& s = report.outcome.statistics;
@@ -146,6 +160,9 @@ inline void print_report(const FilterReport& report) {
                              p.radius.delta, filter::to_text(p.block)));
   line("weights", weights_text(p));
   if (p.fit == filter::BallFit::linear) line("fit", "linear in place and normal");
+  if (s.fireflies > 0 || p.fireflies.kind != filter::FireflyRule::Kind::keep) {
+    line("fireflies", fireflies_text(report));
+  }
   const std::string layers = layers_text(report);
   if (!layers.empty()) line("layers", layers);
   const std::string alpha = alpha_text(report);
@@ -248,6 +265,10 @@ inline nlohmann::ordered_json to_json(const FilterReport& report) {
   if (filter::info(report.parameters.estimator).is_of_photons) {
     json["photons"] = s.photons;
     json["photons_left_out"] = s.photons_left_out;
+  }
+  if (report.parameters.fireflies.kind != filter::FireflyRule::Kind::keep) {
+    json["fireflies"] = {
+        {"count", s.fireflies}, {"light", s.light}, {"light_apart", s.light_apart}};
   }
   if (report.vertex) json["vertex"] = to_text(*report.vertex);
   if (!report.frames.empty()) json["frames"] = report.frames;

@@ -16,19 +16,19 @@ namespace {
 
 class TreeEngine final : public Engine {
  public:
-  explicit TreeEngine(const Problem& problem) : p_(problem), packets_(problem) {
-    if (p_.fit == BallFit::linear) fit_sources_.emplace(packets_.tree(), p_.records);
-  }
+  explicit TreeEngine(const Problem& problem) : p_(problem), packets_(problem) {}
 
   [[nodiscard]] bool is_moderate() const { return packets_.is_moderate(); }
 
-  void apply(std::span<const Averaged> all, bool count_refusals, std::span<std::uint32_t> neighbors,
-             Statistics& statistics) override {
+  void apply(std::span<const Averaged> all, BallFit ball_fit, bool count_refusals,
+             std::span<std::uint32_t> neighbors, Statistics& statistics) override {
     const Tree& tree = packets_.tree();
     const WeightTerms& terms = p_.weights.terms();
     std::vector<TreeSums> sums;
     for (const Averaged& one : all) sums.emplace_back(tree, one.values, p_.area);
-    if (fit_sources_) fit_sources_->set_luminance(tree, all[0].values);
+    const bool fits = ball_fit == BallFit::linear;
+    if (fits && !fit_sources_) fit_sources_.emplace(tree, p_.records);
+    if (fits) fit_sources_->set_luminance(tree, all[0].values);
     const std::size_t size = packets_.order().size();
     std::vector<Statistics> parts(core::range_count(size, Packets::kGrain));
     core::parallel_for(size, Packets::kGrain, [&](std::size_t begin, std::size_t end) {
@@ -37,9 +37,9 @@ class TreeEngine final : public Engine {
       Found found;
       Fitting fitting;
       const std::size_t rows = 3 * all.size();
-      const bool lists = all.size() > 1 || fit_sources_;
+      const bool lists = all.size() > 1 || fits;
       core::Buffer<double> several(lists ? rows * kWidth : 0);
-      if (fit_sources_) fitting.beside = core::Buffer<double>(rows * kWidth);
+      if (fits) fitting.beside = core::Buffer<double>(rows * kWidth);
       core::Buffer<float> means(p_.area.empty() ? rows * kWidth : 0);
       packets_.each(begin, end, [&](auto queries, auto nodes, Packet& packet) {
         double* added = packet.sum[0];
@@ -54,7 +54,7 @@ class TreeEngine final : public Engine {
         for (std::size_t k = 0; k < queries.size(); ++k) {
           neighbors[queries[k]] = static_cast<std::uint32_t>(packet.count[k]);
         }
-        if (fit_sources_) {
+        if (fits) {
           fit(queries, packet, found, sums, added, all, fitting);
         } else if (p_.area.empty()) {
           average_sums(packet, {added, rows * kWidth}, means.begin());
@@ -196,7 +196,7 @@ class TreeEngine final : public Engine {
 
   const Problem& p_;
   Packets packets_;
-  std::optional<FitSources> fit_sources_;  // for [fit]
+  std::optional<FitSources> fit_sources_;  // once [fit] was asked for
 };
 
 }  // namespace

@@ -6,6 +6,8 @@
 #define PSF_FILTER_ENGINE_FOUND_INL_H
 #endif
 
+#include <bit>
+
 #include "filter/engine/found.h"
 #include "filter/engine/sums-inl.h"
 
@@ -48,6 +50,27 @@ HWY_INLINE void count_found(const Found& found, Packet& packet) {
       counted = add_one_where(mask_of(source.lanes), counted);
     }
     hn::Store(counted, kDI, packet.count + lane);
+  }
+}
+
+// Appends the places of what was found to the list of each query.
+HWY_INLINE void list_sources(const Tree& tree, const Found& found,
+                             std::array<std::vector<std::uint32_t>, kWidth>& places) {
+  for (const auto& [level, family, bits, unused] : found.nodes) {
+    for (std::uint32_t rest = bits; rest != 0; rest &= rest - 1) {
+      const std::size_t node = family * kWidth + static_cast<std::size_t>(std::countr_zero(rest));
+      const std::size_t first = node * kRecordsBelow[level];
+      for (std::size_t place = first; place < first + tree.size_of(level, node); ++place) {
+        for (auto& of_query : places) of_query.push_back(static_cast<std::uint32_t>(place));
+      }
+    }
+  }
+  for (std::size_t lane = 0; lane < kWidth; lane += kLanes) {
+    for (const auto& [place, lanes] : found.sources[lane / kLanes]) {
+      for (std::uint32_t rest = lanes; rest != 0; rest &= rest - 1) {
+        places[lane + static_cast<std::size_t>(std::countr_zero(rest))].push_back(place);
+      }
+    }
   }
 }
 

@@ -67,6 +67,11 @@ void add_found_on(std::span<const TreeSums> sums, const Found& found, double* ou
   }
 }
 
+void list_found_on(const Tree& tree, const Found& found,
+                   std::array<std::vector<std::uint32_t>, kWidth>& places) {
+  list_sources(tree, found, places);
+}
+
 void find_moments_on(const Tree& tree, const FitSources& sources, const Found& found,
                      const Packet& packet, FitPacket& fit) {
   moments_of_found(tree, sources, found, packet, fit);
@@ -109,6 +114,7 @@ HWY_EXPORT(extremes_on);
 HWY_EXPORT(add_sources_on);
 HWY_EXPORT(find_sources_on);
 HWY_EXPORT(add_found_on);
+HWY_EXPORT(list_found_on);
 HWY_EXPORT(find_moments_on);
 HWY_EXPORT(add_by_weight_on);
 HWY_EXPORT(average_sums_on);
@@ -130,6 +136,10 @@ void find_sources(const Tree& tree, const WeightTerms& terms,
 }
 void add_found(std::span<const TreeSums> sums, const Found& found, double* out) {
   HWY_DYNAMIC_DISPATCH(add_found_on)(sums, found, out);
+}
+void list_found(const Tree& tree, const Found& found,
+                std::array<std::vector<std::uint32_t>, kWidth>& places) {
+  HWY_DYNAMIC_DISPATCH(list_found_on)(tree, found, places);
 }
 void find_moments(const Tree& tree, const FitSources& sources, const Found& found,
                   const Packet& packet, FitPacket& fit) {

@@ -86,6 +86,10 @@ void find_sources(const Tree& tree, const WeightTerms& terms,
                   std::span<const std::uint32_t> parents, Packet& packet, Found& found);
 void add_found(std::span<const TreeSums> sums, const Found& found, double* out);
 
+// Appends what was found to the list of each query: places in the tree's order.
+void list_found(const Tree& tree, const Found& found,
+                std::array<std::vector<std::uint32_t>, kWidth>& places);
+
 // For [fit]: sets the moments of `fit` over what was found; with its weights, sets `out`, (values, 3,
 // 16), to the sums of weight times value. Neither knows of queries that the walk did not meet.
 void find_moments(const Tree& tree, const FitSources& sources, const Found& found,

@@ -170,7 +170,7 @@ class Control {
     for (std::size_t k = 0; k < values.size(); ++k) all.push_back({values[k], means[k]});
     std::vector<std::uint32_t> counts(r_.size());
     Statistics unused;  // the engine counts queries of `half` as well
-    engine->apply(all, false, counts, unused);
+    engine->apply(all, BallFit::mean, false, counts, unused);
     for (const std::uint32_t i : roles.queries) {
       if (half_of(r_, block_, i) == half) continue;
       const std::uint32_t count = counts[i] > 0 ? counts[i] : kOrphanSources;

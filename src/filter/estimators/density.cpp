@@ -103,7 +103,8 @@ Estimates density(const MethodInput& input) {
     const std::unique_ptr<Engine> engine = ball_engine(photons.problem(), input.block, parameters);
     result.statistics.seconds_index = core::seconds_since(start);
     const Averaged sums{photons.values(), result.c_bar};
-    engine->apply({&sums, 1}, parameters.count_refusals, result.neighbors, result.statistics);
+    engine->apply({&sums, 1}, BallFit::mean, parameters.count_refusals, result.neighbors,
+                  result.statistics);
   } else {
     for (std::size_t k = 0; k < roles.queries.size(); ++k) result.statistics.add_query(0);
   }

@@ -34,7 +34,7 @@ class HashEngine final : public Engine {
     fill(grid_, 0);
   }
 
-  void apply(std::span<const Averaged> all, bool, std::span<std::uint32_t> neighbors,
+  void apply(std::span<const Averaged> all, BallFit, bool, std::span<std::uint32_t> neighbors,
              Statistics& statistics) override {
     share(grid_, all, neighbors);
     std::vector<std::uint32_t> orphans;

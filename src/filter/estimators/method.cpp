@@ -4,6 +4,7 @@
 
 #include "core/parallel.h"
 #include "core/seconds.h"
+#include "filter/fireflies.h"
 #include "filter/inputs.h"
 
 namespace psf::filter {
@@ -23,10 +24,10 @@ class Averages {
     const Records& records = input.records;
     result.neighbors.assign(records.size(), 0);
     result.layers.resize(records.layers.size());
-    parts_.push_back({records.contribution, {}, &result.c_bar});
+    parts_.push_back({records.contribution, &result.c_bar, {}, {}});
     for (std::size_t k = 0; k < records.layers.size(); ++k) {
       if (records.layers[k].contribution.empty()) continue;
-      parts_.push_back({records.layers[k].contribution, {}, &result.layers[k]});
+      parts_.push_back({records.layers[k].contribution, &result.layers[k], {}, {}});
     }
     for (const Part& part : parts_) part.c_bar->resize(records.size());  // Rgb has no first value
     blacken([](Role role) { return !is_query(role); });
@@ -51,13 +52,26 @@ class Averages {
     if (!input_.parameters.demodulate) return;
     for (Part& part : parts_) part.given = demodulated(part.contribution, input_.records, roles_);
   }
+  // Leaves what fireflies do not keep out of the values, and where it is spread, sets apart what every
+  // query is given of it.
+  void set_apart(const Fireflies& fireflies) {
+    for (Part& part : parts_) {
+      const std::span<const Rgb> all = values(part);
+      if (fireflies.gives()) {
+        part.gifts.resize(all.size());
+        fireflies.give(all, part.gifts);
+      }
+      if (part.given.empty()) part.given.assign(all.begin(), all.end());
+      for (const std::uint32_t j : fireflies.records()) part.given[j] *= fireflies.kept()[j];
+    }
+  }
   // The values that are averaged of c.
   [[nodiscard]] std::span<const Rgb> values() const { return values(parts_[0]); }
 
   void apply(Engine& engine, bool count_refusals, Statistics& statistics) {
     std::vector<Averaged> all;
     for (const Part& part : parts_) all.push_back({values(part), *part.c_bar});
-    engine.apply(all, count_refusals, result_.neighbors, statistics);
+    engine.apply(all, input_.parameters.fit, count_refusals, result_.neighbors, statistics);
   }
   // Applies the engine to the averages.
   void apply_again(Engine& engine) {
@@ -70,7 +84,7 @@ class Averages {
   }
 
   // Applies finished() to the averages of every query that it may change: without demodulation
-  // those of one source.
+  // those of one source, which is no firefly. Then adds what fireflies give.
   void finish(std::span<const float> radius) {
     const std::span<const std::uint32_t> queries = roles_.queries;
     core::parallel_for(queries.size(), kRecordsARange, [&](std::size_t begin, std::size_t end) {
@@ -84,6 +98,7 @@ class Averages {
           c_bar = finished(c_bar, result_.neighbors[i], roles_.of[i] == Role::source, radius[i],
                            part.contribution[i], input_.records, i, input_.parameters);
         }
+        add_gifts(part, queries.subspan(begin, end - begin));
       }
     });
   }
@@ -91,11 +106,22 @@ class Averages {
  private:
   struct Part {
     std::span<const Rgb> contribution;
-    std::vector<Rgb> given;   // to the engine in place of `contribution`; empty: nothing was
     std::vector<Rgb>* c_bar;  // in the result
+    std::vector<Rgb> given;   // to the engine in place of `contribution`; empty: nothing was
+    std::vector<Rgb> gifts;   // of fireflies, which come to the averages; empty: none
   };
   static std::span<const Rgb> values(const Part& part) {
     return part.given.empty() ? part.contribution : std::span<const Rgb>(part.given);
+  }
+
+  void add_gifts(const Part& part, std::span<const std::uint32_t> some) const {
+    if (part.gifts.empty()) return;
+    const bool demodulate = input_.parameters.demodulate;
+    for (const std::uint32_t i : some) {
+      const Rgb& gift = part.gifts[i];
+      Rgb& c_bar = (*part.c_bar)[i];
+      c_bar = c_bar + (demodulate ? remodulate(gift, input_.records.reflectance[i]) : gift);
+    }
   }
 
   const MethodInput& input_;
@@ -122,22 +148,31 @@ Estimates apply_engine(const MethodInput& input, const EngineSteps& steps) {
   if (steps.areas != nullptr) area = steps.areas(records, roles, block);
   const Weights weights(records, terms_in_use(records, parameters.weights));
   averages.demodulate();
-  std::span<const float> radius = given;
-  if (steps.radii != nullptr) {
-    result.radius =
-        steps.radii({records, roles, given, weights, area}, averages.values(), parameters);
-    radius = result.radius;
+  Problem problem{records, roles, given, weights, area};
+  std::unique_ptr<Engine> engine;
+  double seconds_of_fireflies = 0;
+  if (parameters.fireflies.kind != FireflyRule::Kind::keep) {
+    engine = steps.engine(problem, block, parameters);
+    const auto fireflies_start = Clock::now();
+    const Fireflies fireflies(problem, *engine, averages.values(), parameters, block.n);
+    averages.set_apart(fireflies);
+    fireflies.add_to(result.statistics);
+    seconds_of_fireflies = seconds_since(fireflies_start);
   }
-  const Problem problem{records, roles, radius, weights, area, false, parameters.fit};
-  const std::unique_ptr<Engine> engine = steps.engine(problem, block, parameters);
-  result.statistics.seconds_index = seconds_since(start);
+  if (steps.radii != nullptr) {
+    engine.reset();  // it is of other radii
+    result.radius = steps.radii(problem, averages.values(), parameters);
+    problem.radius = result.radius;
+  }
+  if (!engine) engine = steps.engine(problem, block, parameters);
+  result.statistics.seconds_index = seconds_since(start) - seconds_of_fireflies;
 
   const auto filter_start = Clock::now();
   averages.apply(*engine, parameters.count_refusals, result.statistics);
   for (std::uint32_t k = 1; k < parameters.iterations; ++k) averages.apply_again(*engine);
-  averages.finish(radius);
+  averages.finish(problem.radius);
   result.roles = std::move(roles.of);
-  result.statistics.seconds_filter = seconds_since(filter_start);
+  result.statistics.seconds_filter = seconds_since(filter_start) + seconds_of_fireflies;
   return result;
 }
 

@@ -46,7 +46,7 @@ struct EstimatorInfo {
   // Its sums are over the area of the ball's disk, not over their number: it needs the distance and
   // the camera's angle per pixel.
   bool is_over_area = false;
-  // What it does with the contributions in a ball can be [fit] in place of [average].
+  // It is a mean over a ball: [fit] can take its place, and [fireflies] be told by it.
   bool fits = false;
   // estimate_many() finds what it gives for many radii in one traversal.
   bool shares_traversal = false;

@@ -52,6 +52,12 @@ void Parameters::validate() const {
       fmt::format("`fit`: `estimator {}` is no mean over a ball that a fit could take the place "
                   "of; give `fit mean`",
                   info(estimator).name));
+  require(fireflies.kind == FireflyRule::Kind::keep || info(estimator).fits,
+          fmt::format("`fireflies`: what is ordinary in a ball is told by a mean over it, and "
+                      "`estimator {}` is none; give `fireflies keep`",
+                      info(estimator).name));
+  require(fireflies.limit >= 1 && std::isfinite(fireflies.limit),
+          "`fireflies`: the limit of clamp must be finite and at least 1");
   require(agree > 0, "`agree`: a number of standard errors above 0");
   for (const Refusal& refusal : info(estimator).refusals) {
     require(!refusal.applies(*this), std::string(refusal.message));

@@ -50,6 +50,17 @@ enum class BallFit : std::uint8_t {
   linear  // [fit]
 };
 
+// What becomes of contributions far brighter than those around them.
+struct FireflyRule {
+  enum class Kind : std::uint8_t {
+    keep,    // averaged like any other
+    spread,  // [fireflies]: given out over a distance of their own
+    clamp    // dimmed to `limit` times sqrt(n) times the ordinary brightness of their ball
+  };
+  Kind kind = Kind::keep;
+  double limit = 1;  // of clamp; at least 1, finite
+};
+
 // What finds the neighbours; the result is the same.
 enum class EngineKind : std::uint8_t {
   flann,  // engine/: FLANN over groups of records
@@ -69,6 +80,7 @@ struct Parameters {
   // more than this many standard errors; measured in README.md.
   double agree = 1.5;
   BallFit fit = BallFit::mean;
+  FireflyRule fireflies;
   EngineKind engine = EngineKind::flann;
   bool count_refusals = false;  // pairs in the balls and refusals by term; about doubles the time
 

@@ -156,6 +156,14 @@ const Parameter kAfterTerms[] = {
      [](Parameters& p, const std::string& text) {
        p.fit = static_cast<BallFit>(parse_name("fit", text, kFitNames));
      }},
+    {"fireflies",
+     "RULE",
+     "of contributions far brighter than those around them: keep them, spread each over a distance "
+     "of its own, or clamp:K, dim them to K sqrt(n) times what is ordinary",
+     "keep,spread,clamp:4",
+     {},
+     [](const Parameters& p) { return to_text(p.fireflies); },
+     [](Parameters& p, const std::string& text) { p.fireflies = parse_fireflies(text); }},
     {"search",
      "flann|plain|brute",
      "engine: flann; the same result from plain FLANN, a search a record, or by brute force",

@@ -65,6 +65,18 @@ std::string to_text(const std::optional<float>& threshold) {
   return threshold ? fmt::format("{}", *threshold) : "off";
 }
 
+std::string to_text(const FireflyRule& rule) {
+  switch (rule.kind) {
+    case FireflyRule::Kind::spread:
+      return "spread";
+    case FireflyRule::Kind::clamp:
+      return fmt::format("clamp:{}", rule.limit);
+    case FireflyRule::Kind::keep:
+      break;
+  }
+  return "keep";
+}
+
 std::string to_text(bool on) {
   return on ? "on" : "off";
 }
@@ -139,6 +151,17 @@ BlockSize parse_block(const std::string& text) {
     }
   }
   refuse("block", text, "is no block: write 2^16 (paths; base >= 2), 1pass, 16passes or all");
+}
+
+FireflyRule parse_fireflies(const std::string& text) {
+  if (text == "keep") return {};
+  if (text == "spread") return {FireflyRule::Kind::spread};
+  constexpr std::string_view kClamp = "clamp:";
+  if (text.starts_with(kClamp)) {
+    const auto limit = number<double>(std::string_view(text).substr(kClamp.size()));
+    if (limit && *limit >= 1 && std::isfinite(*limit)) return {FireflyRule::Kind::clamp, *limit};
+  }
+  refuse("fireflies", text, "is no rule: write keep, spread, or clamp:4 (a number of at least 1)");
 }
 
 std::uint32_t parse_sources(const std::string& text) {

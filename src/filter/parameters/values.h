@@ -16,6 +16,7 @@ namespace psf::filter {
 [[nodiscard]] std::string to_text(const Radius& radius);
 [[nodiscard]] std::string to_text(const BlockSize& block);
 [[nodiscard]] std::string to_text(const std::optional<float>& threshold);
+[[nodiscard]] std::string to_text(const FireflyRule& rule);  // keep, spread, clamp:4
 [[nodiscard]] std::string to_text(bool on);
 
 // These throw Error{usage} that names the parameter and says what may be written.
@@ -28,6 +29,7 @@ namespace psf::filter {
                                      std::span<const std::string_view> names);
 void parse_radius(const std::string& text, Radius& radius);  // its r0 and basis
 [[nodiscard]] BlockSize parse_block(const std::string& text);
+[[nodiscard]] FireflyRule parse_fireflies(const std::string& text);
 [[nodiscard]] std::uint32_t parse_sources(const std::string& text);  // 4 for 1/4
 
 }  // namespace psf::filter
