@@ -20,8 +20,8 @@ inline constexpr const char* kBackgroundIs = "psf:background";
 inline constexpr const char* kApart = "apart";
 
 // The other layers of a picture of psf filter; `alpha` is A and the background.
-inline constexpr std::array<std::string_view, 6> kOtherLayers = {kUnfiltered, "neighbors", "radius",
-                                                                 "albedo",    "normal",    "alpha"};
+inline constexpr std::array<std::string_view, 7> kOtherLayers = {
+    kUnfiltered, "neighbors", "radius", "albedo", "normal", "alpha", "fireflies"};
 
 // Why a layer of the light cannot have this name; empty where it can. Lists of layers have commas,
 // weights an equals sign, and `all` and `none` are lists.

@@ -22,6 +22,7 @@ struct Estimates {
   // By layer of the records: c_bar of its contributions; empty where it has none.
   std::vector<std::vector<Rgb>> layers = {};
   std::vector<float> radius = {};  // the radii that the estimator chose; empty: those given
+  std::vector<Rgb> given = {};     // what of c_bar [fireflies] have spread; empty: nothing
 };
 
 // Filters one block with parameters.estimator. `radius`: r_i in world units, finite or infinite, >=

@@ -54,6 +54,10 @@ void merge_volumes(const Records& records, std::span<const float> given, Estimat
   if (result.radius.empty() && !volumes.radius.empty()) {
     result.radius.assign(given.begin(), given.end());
   }
+  if (result.given.empty() && !volumes.given.empty()) {
+    result.given.assign(records.size(), Rgb(0, 0, 0));
+  }
+  take(result.given, volumes.given);
   take(result.radius, volumes.radius);
   result.statistics += volumes.statistics;
 }

@@ -89,6 +89,9 @@ class DumpFilter {
     }
   }
 
+  [[nodiscard]] bool spreads() const {
+    return run_.parameters.fireflies.kind == filter::FireflyRule::Kind::spread;
+  }
   void make_pictures() {
     PictureLayers layers = run_.layers;
     layers.light.emplace();
@@ -96,6 +99,7 @@ class DumpFilter {
     layers.albedo = layers.albedo && blocks_.channels().reflectance.has_value();
     layers.normal = layers.normal && blocks_.channels().normal.has_value();
     layers.alpha = layers.alpha && blocks_.channels().coverage.has_value();
+    layers.fireflies = layers.fireflies && spreads();
     for (const filter::CameraView& camera : dump_.cameras()) {
       outcome_.pictures.emplace_back(camera, layers);
       if (run_.with_noise) outcome_.noise.emplace_back(camera);
@@ -108,6 +112,7 @@ class DumpFilter {
     const std::uint64_t sums = CameraPictures::kBytesOfSums +
                                layers * CameraPictures::kBytesOfSumsALayer +
                                (alpha ? CameraPictures::kBytesOfSumsOfAlpha : 0) +
+                               (spreads() ? CameraPictures::kBytesOfFireflies : 0) +
                                (run_.with_noise ? NoiseMoments::kBytesAPixel : 0);
     const std::uint64_t writing = CameraPictures::kBytesToWrite +
                                   layers * CameraPictures::kBytesToWriteALayer +

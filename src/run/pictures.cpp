@@ -81,7 +81,8 @@ CameraPictures::CameraPictures(const filter::CameraView& camera, const PictureLa
       layers_(layers),
       albedo_(layers.albedo ? camera.width : 0, layers.albedo ? camera.height : 0),
       normal_(layers.normal ? camera.width : 0, layers.normal ? camera.height : 0),
-      alpha_(layers.alpha ? camera.width : 0, layers.alpha ? camera.height : 0) {}
+      alpha_(layers.alpha ? camera.width : 0, layers.alpha ? camera.height : 0),
+      fireflies_(layers.fireflies ? camera.width : 0, layers.fireflies ? camera.height : 0) {}
 
 void CameraPictures::add(const Records& records, const Estimates& estimates,
                          std::span<const float> radius, std::size_t i) {
@@ -102,6 +103,7 @@ void CameraPictures::add(const Records& records, const Estimates& estimates,
     details_.add(pixel, Rgb(static_cast<float>(estimates.neighbors[i]), r_i, 0));
   }
   add_guides(records, i, vertex);
+  add_fireflies(records, estimates, i, vertex);
 }
 
 void CameraPictures::add_layer(std::size_t k, const Records& records, const Estimates& estimates,
@@ -131,6 +133,14 @@ void CameraPictures::add_guides(const filter::Records& records, std::size_t i, b
     if (is_finite(normal)) normal_.add(records.pixel[i], Rgb(normal.x, normal.y, normal.z));
   }
   if (layers_.alpha) alpha_.add(records.pixel[i], Rgb(records.coverage[i], 0, 0));
+}
+
+void CameraPictures::add_fireflies(const Records& records, const Estimates& estimates,
+                                   std::size_t i, bool vertex) {
+  if (!layers_.fireflies) return;
+  const bool spread = vertex && !estimates.given.empty();
+  const Rgb light = spread ? records.throughput[i] * estimates.given[i] : Rgb(0, 0, 0);
+  if (is_finite(light)) fireflies_.add(records.pixel[i], light);
 }
 
 std::vector<float> CameraPictures::filled(std::size_t part) const {
@@ -198,6 +208,7 @@ film::Image CameraPictures::image() const {
   if (layers_.albedo) add("albedo.", "RGB", albedo_);
   if (layers_.normal) add("normal.", "XYZ", normal_);
   if (layers_.alpha) add("", "A", alpha_);
+  if (layers_.fireflies) add("fireflies.", "RGB", fireflies_);
   image.layers.resize(planes.size());
   core::parallel_for(planes.size(), 1, [&](std::size_t k, std::size_t) {
     image.layers[k] = {planes[k].channel, planes[k].film->mean(planes[k].component)};

@@ -21,11 +21,12 @@ struct PictureLayers {
   bool unfiltered = true, neighbors = true, radius = true;
   bool albedo = true, normal = true;  // where the dump has the channels
   bool alpha = true;                  // the same: A, and the background apart
+  bool fireflies = true;              // where they are spread
   // The layers of the light, by name; not set: all that the dump has.
   std::optional<std::vector<std::string>> light = {};
 
   [[nodiscard]] static PictureLayers none() {
-    return {false, false, false, false, false, false, std::vector<std::string>()};
+    return {false, false, false, false, false, false, false, std::vector<std::string>()};
   }
 };
 
@@ -51,6 +52,7 @@ class CameraPictures {
   // With PictureLayers::alpha: A, the mean coverage; the light of paths whose coverage is 0 is then
   // in none of the colours but in background.R/G/B and unfiltered-input.background.R/G/B
   // (film::kBackgroundIs).
+  // fireflies.R/G/B: alpha times what [fireflies] have spread, a part of the filtered picture.
   // Of each layer of the light what there is of the whole: NAME.R/G/B, and unfiltered-input.NAME;
   // the attribute film::kLightLayers has their names.
   [[nodiscard]] film::Image image() const;
@@ -68,6 +70,7 @@ class CameraPictures {
   static constexpr std::uint64_t kBytesToWrite = sizeof(float) * 2 * 14;
   static constexpr std::uint64_t kBytesOfSumsOfAlpha = kBytesOfFilm + sizeof(double) * 2 * 3;
   static constexpr std::uint64_t kBytesToWriteOfAlpha = sizeof(float) * 2 * 7;
+  static constexpr std::uint64_t kBytesOfFireflies = kBytesOfFilm + sizeof(float) * 2 * 3;
   static constexpr std::uint64_t kBytesOfSumsALayer = sizeof(double) * 2 * 3;
   static constexpr std::uint64_t kBytesToWriteALayer = sizeof(float) * 2 * 6;
 
@@ -78,6 +81,8 @@ class CameraPictures {
     return layers_.alpha && records.coverage[i] == 0;
   }
   void add_guides(const filter::Records& records, std::size_t i, bool vertex);
+  void add_fireflies(const filter::Records& records, const filter::Estimates& estimates,
+                     std::size_t i, bool vertex);
 
   std::vector<std::string> layer_names_;  // of the light
   // Parts: the whole, then the layers, then the background where it is kept apart.
@@ -86,6 +91,7 @@ class CameraPictures {
   PictureLayers layers_;
   film::Film albedo_, normal_;
   film::Film alpha_;  // coverage, 0, 0
+  film::Film fireflies_;
 };
 
 // Adds the records [first, last) of a filtered block to the pictures of their cameras. Threads

@@ -49,8 +49,9 @@ run::PictureLayers layers_of(const std::string& text) {
   run::PictureLayers layers = run::PictureLayers::none();
   if (text == "none") return layers;
   // In the order of film::kOtherLayers.
-  bool* const others[] = {&layers.unfiltered, &layers.neighbors, &layers.radius,
-                          &layers.albedo,     &layers.normal,    &layers.alpha};
+  bool* const others[] = {&layers.unfiltered, &layers.neighbors, &layers.radius,   &layers.albedo,
+                          &layers.normal,     &layers.alpha,     &layers.fireflies};
+  static_assert(std::size(others) == film::kOtherLayers.size());
   std::vector<std::string>& light = *layers.light;
   for (const std::string& name : core::split(text, ',')) {
     const auto other = std::find(film::kOtherLayers.begin(), film::kOtherLayers.end(), name);

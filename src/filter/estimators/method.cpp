@@ -58,7 +58,7 @@ class Averages {
     for (Part& part : parts_) {
       const std::span<const Rgb> all = values(part);
       if (fireflies.gives()) {
-        part.gifts.resize(all.size());
+        part.gifts.assign(all.size(), Rgb(0, 0, 0));
         fireflies.give(all, part.gifts);
       }
       if (part.given.empty()) part.given.assign(all.begin(), all.end());
@@ -92,7 +92,7 @@ class Averages {
       for (const std::uint32_t i : queries.subspan(begin, end - begin)) {
         if (input_.parameters.demodulate || result_.neighbors[i] == 1) some.push_back(i);
       }
-      for (const Part& part : parts_) {
+      for (Part& part : parts_) {
         for (const std::uint32_t i : some) {
           Rgb& c_bar = (*part.c_bar)[i];
           c_bar = finished(c_bar, result_.neighbors[i], roles_.of[i] == Role::source, radius[i],
@@ -101,6 +101,7 @@ class Averages {
         add_gifts(part, queries.subspan(begin, end - begin));
       }
     });
+    result_.given = std::move(parts_[0].gifts);
   }
 
  private:
@@ -114,13 +115,13 @@ class Averages {
     return part.given.empty() ? part.contribution : std::span<const Rgb>(part.given);
   }
 
-  void add_gifts(const Part& part, std::span<const std::uint32_t> some) const {
+  void add_gifts(Part& part, std::span<const std::uint32_t> some) const {
     if (part.gifts.empty()) return;
     const bool demodulate = input_.parameters.demodulate;
     for (const std::uint32_t i : some) {
-      const Rgb& gift = part.gifts[i];
-      Rgb& c_bar = (*part.c_bar)[i];
-      c_bar = c_bar + (demodulate ? remodulate(gift, input_.records.reflectance[i]) : gift);
+      Rgb& gift = part.gifts[i];
+      if (demodulate) gift = remodulate(gift, input_.records.reflectance[i]);
+      (*part.c_bar)[i] += gift;
     }
   }
 
