@@ -51,8 +51,10 @@ std::uint64_t memory_per_record(const Parameters& parameters) {
   }
   if (parameters.fireflies.kind == FireflyRule::Kind::spread) {
     constexpr std::uint64_t kPlaces = 6 * kWord, kEnds = 2 * 8;
-    constexpr std::uint64_t kGifts = 8 * 2 * kWord;  // 8 of a query, more than any scene has had
-    bytes += kPlaces + kEnds + kGifts + tree_bytes(kVector + compared(parameters));
+    constexpr std::uint64_t kGifts = 6 * 2 * kWord;  // 6 of a query, more than any scene has had
+    // The tree over the queries has no sums, nor has the other one then.
+    constexpr std::uint64_t kSumsOfBoth = 2 * (kSum + kSum / kQuad);
+    bytes += kPlaces + kEnds + kGifts + tree_bytes(kVector + compared(parameters)) - kSumsOfBoth;
   }
   if (!estimator.has_tree) return bytes;
   return bytes + tree_bytes(kVector + compared(parameters));  // with positions

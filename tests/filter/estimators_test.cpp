@@ -28,6 +28,11 @@ TEST_CASE("Estimators have names of their own, and memory of their own on top of
   filter::Parameters fit;
   fit.fit = filter::BallFit::linear;
   CHECK(filter::memory_per_record(fit) == bytes(Estimator::average) + 20);  // normal, luminance
+  filter::Parameters spread;
+  spread.fireflies = {filter::FireflyRule::Kind::clamp, 4};
+  CHECK(filter::memory_per_record(spread) == bytes(Estimator::average) + 28);  // values, kept
+  spread.fireflies = {filter::FireflyRule::Kind::spread};
+  CHECK(filter::memory_per_record(spread) == bytes(Estimator::average) + 28 + 88 + 43);  // gifts, a tree
 }
 
 TEST_CASE("A channel that only the estimator compares must be finite too") {
