@@ -71,6 +71,29 @@ TEST_CASE("r0 = 0 gives the unfiltered picture bit for bit, demodulated too") {
   }
 }
 
+TEST_CASE("What fireflies have spread is a layer of the picture") {
+  const tests::TempFolder folder;
+  RecordSet set(200);
+  for (std::uint32_t i = 0; i < 200; ++i) set.pixel[i] = i;
+  set.throughput.assign(200, Rgb(0.5f, 0.5f, 0.5f));
+  set.flags[7] = 0;
+  set.position[8] = Vec3(100, 0, 0);
+  set.contribution[20] = Rgb(1e6f, 1e6f, 1e6f);
+  tests::write_dump(folder / "a.pvb", set, {kOne, {200}, {}});
+  FilterRequest run = default_run();
+  CHECK(filtered(folder / "a.pvb", run)[0].find("fireflies.G") == nullptr);
+  run.parameters.fireflies = {filter::FireflyRule::Kind::spread};
+  const film::Image image = filtered(folder / "a.pvb", run)[0];
+  const std::vector<float>& layer = *image.find("fireflies.G");
+  CHECK(layer[0] == Approx(0.5 * 1e6 / 198));  // no other is as bright: to all within four radii
+  CHECK(layer[20] == layer[0]);
+  CHECK(layer[7] == 0);
+  CHECK(layer[8] == 0);
+  CHECK((*image.find("G"))[0] == Approx(0.5 * (197.0 / 198 + 1e6 / 198)));
+  run.layers.fireflies = false;
+  CHECK(filtered(folder / "a.pvb", run)[0].find("fireflies.G") == nullptr);
+}
+
 TEST_CASE("Layers hold neighbours, radius, albedo and normal") {
   const tests::TempFolder folder;
   RecordSet set(200);
