@@ -156,9 +156,9 @@ EngineCase some_case(std::size_t count, std::uint32_t seed, float r, bool materi
 }
 
 TEST_CASE("Fireflies are spread as their equations say, by every engine") {
-  for (const float r : {0.2f, 0.35f, 3.0f}) {
+  for (const float r : {0.2f, 0.35f, 0.9f, 3.0f}) {
     for (const bool material : {false, true}) {
-      const EngineCase c = some_case(700, 21, r, material, r < 1);
+      const EngineCase c = some_case(700, 21, r, material, r < 0.5f);
       const Naive naive(c);
       const std::vector<Triple> expected = naive.c_bar();
       REQUIRE(naive.fireflies() > 4);
