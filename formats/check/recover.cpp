@@ -81,14 +81,18 @@ class Recovery {
   // Where what was committed ends: behind the last commit, or where the slot says that a later one
   // stood, be it past the end of a file that was cut.
   [[nodiscard]] std::uint64_t committed_end() const {
+    std::uint64_t end = walk_.end;
+    for (const SlotRecord& record : later_commits()) end = std::max(end, record.offset);
+    return end;
+  }
+  // What the slot tells of commits behind the last that was found.
+  [[nodiscard]] std::vector<SlotRecord> later_commits() const {
     const std::uint64_t known =
         walk_.commits.empty() ? 0 : walk_.commits.back().frame.prefix.sequence;
-    std::uint64_t end = walk_.end;
-    for (const SlotRecord& record :
-         read_slot(file_, walk_.file_size, walk_.head.frame.end(), walk_.uuid())) {
-      if (record.sequence > known) end = std::max(end, record.offset);
-    }
-    return end;
+    std::vector<SlotRecord> later =
+        read_slot(file_, walk_.file_size, walk_.head.frame.end(), walk_.uuid());
+    std::erase_if(later, [known](const SlotRecord& record) { return record.sequence <= known; });
+    return later;
   }
 
   void check_all_frames() {
@@ -185,6 +189,11 @@ class Recovery {
 
   // Between the last readable commit and a later one there may have been more than was found.
   void check_end() {
+    // A reader that trusts the slot finds it, and may find more in it than was found here.
+    for (const SlotRecord& record : later_commits()) {
+      if (record.offset >= walk_.end) continue;
+      lose({record.offset, "CMIT", {}, {}, 0, 0, "another frame is said to reach over it"});
+    }
     if (committed_ <= walk_.end) return check_slot();
     std::uint64_t place = std::max(walk_.end, walk_.head.frame.end());
     for (const Prefix& frame : walk_.frames) {
