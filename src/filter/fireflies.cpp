@@ -63,7 +63,7 @@ Fireflies::Fireflies(const Problem& problem, Engine& engine, std::span<const Rgb
                      const Parameters& parameters, double n)
     : queries_(problem.roles.queries), kept_(values.size(), 1.0f) {
   find(problem, values, mean_roots(problem, engine, values), parameters.fireflies, n);
-  if (parameters.fireflies.kind == FireflyRule::Kind::spread && !records_.empty()) {
+  if (parameters.fireflies.spreads() && !records_.empty()) {
     find_receivers(problem, parameters.engine);
   }
 }

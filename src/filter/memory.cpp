@@ -49,7 +49,7 @@ std::uint64_t memory_per_record(const Parameters& parameters) {
   if (parameters.fireflies.kind != FireflyRule::Kind::keep) {
     bytes += 2 * kVector + kWord;  // values without what is apart, that, and what is kept
   }
-  if (parameters.fireflies.kind == FireflyRule::Kind::spread) {
+  if (parameters.fireflies.spreads()) {
     constexpr std::uint64_t kPlaces = 6 * kWord, kEnds = 2 * 8;
     constexpr std::uint64_t kGifts = 6 * 2 * kWord;  // 6 of a query, more than any scene has had
     // The tree over the queries has no sums, nor has the other one then.

@@ -166,6 +166,7 @@ FilteredRecords filter_records(const Records& records, std::span<const Camera> c
     layers.albedo = !view.reflectance.empty();
     layers.normal = !view.normal.empty();
     layers.alpha = false;  // records in memory have none
+    layers.fireflies = chosen.fireflies.spreads();
     pictures.emplace_back(camera, layers);
   }
   static_cast<void>(run::add_records(view, estimates, result.radius, 0, columns.size(), pictures));

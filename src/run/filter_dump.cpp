@@ -89,9 +89,6 @@ class DumpFilter {
     }
   }
 
-  [[nodiscard]] bool spreads() const {
-    return run_.parameters.fireflies.kind == filter::FireflyRule::Kind::spread;
-  }
   void make_pictures() {
     PictureLayers layers = run_.layers;
     layers.light.emplace();
@@ -99,7 +96,7 @@ class DumpFilter {
     layers.albedo = layers.albedo && blocks_.channels().reflectance.has_value();
     layers.normal = layers.normal && blocks_.channels().normal.has_value();
     layers.alpha = layers.alpha && blocks_.channels().coverage.has_value();
-    layers.fireflies = layers.fireflies && spreads();
+    layers.fireflies = layers.fireflies && run_.parameters.fireflies.spreads();
     for (const filter::CameraView& camera : dump_.cameras()) {
       outcome_.pictures.emplace_back(camera, layers);
       if (run_.with_noise) outcome_.noise.emplace_back(camera);
@@ -109,11 +106,11 @@ class DumpFilter {
   void set_last(std::size_t last) {
     const std::uint64_t layers = blocks_.channels().layers.size();
     const bool alpha = blocks_.channels().coverage.has_value();
-    const std::uint64_t sums = CameraPictures::kBytesOfSums +
-                               layers * CameraPictures::kBytesOfSumsALayer +
-                               (alpha ? CameraPictures::kBytesOfSumsOfAlpha : 0) +
-                               (spreads() ? CameraPictures::kBytesOfFireflies : 0) +
-                               (run_.with_noise ? NoiseMoments::kBytesAPixel : 0);
+    const std::uint64_t sums =
+        CameraPictures::kBytesOfSums + layers * CameraPictures::kBytesOfSumsALayer +
+        (alpha ? CameraPictures::kBytesOfSumsOfAlpha : 0) +
+        (run_.parameters.fireflies.spreads() ? CameraPictures::kBytesOfFireflies : 0) +
+        (run_.with_noise ? NoiseMoments::kBytesAPixel : 0);
     const std::uint64_t writing = CameraPictures::kBytesToWrite +
                                   layers * CameraPictures::kBytesToWriteALayer +
                                   (alpha ? CameraPictures::kBytesToWriteOfAlpha : 0);

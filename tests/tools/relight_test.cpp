@@ -119,7 +119,7 @@ TEST_CASE("psf filter writes the layers of the light that --layers names") {
   CHECK(channels("unfiltered-input,sky") == 12);
   const Outcome refused = work.run("psf filter IN.pvb -o OUT.exr --layers moon");
   CHECK(refused.code == 2);
-  CHECK(refused.err.find("normal, alpha, sun, sky") != std::string::npos);
+  CHECK(refused.err.find("normal, alpha, fireflies, sun, sky") != std::string::npos);
 }
 
 TEST_CASE("A light of any name goes from the scene to the relit picture") {

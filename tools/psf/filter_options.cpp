@@ -157,7 +157,8 @@ void add_filter_options(CLI::App& command, FilterOptions& options) {
   command
       .add_option("--layers", options.layers,
                   "of an .exr beside the picture: all, none, or some of unfiltered-input, "
-                  "neighbors, radius, albedo, normal, alpha (with the background apart), and the "
+                  "neighbors, radius, albedo, normal, alpha (with the background apart), fireflies "
+                  "(what they spread), and the "
                   "dump's layers of the light")
       ->type_name("NAME,NAME,...")
       ->capture_default_str();

@@ -95,9 +95,7 @@ inline std::string fireflies_text(const FilterReport& report) {
   const filter::Statistics& s = report.outcome.statistics;
   const filter::FireflyRule& rule = report.parameters.fireflies;
   if (s.fireflies == 0) return "none";
-  const std::string became = rule.kind == filter::FireflyRule::Kind::spread
-                                 ? "spread over distances of their own"
-                                 : "dimmed away";
+  const std::string became = rule.spreads() ? "spread over distances of their own" : "dimmed away";
   return fmt::format("{}, {:.2g}% of the contributions; {:.2g}% of the light {}",
                      core::with_commas(s.fireflies),
                      100 * static_cast<double>(s.fireflies) / static_cast<double>(s.sources),

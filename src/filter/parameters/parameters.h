@@ -59,6 +59,8 @@ struct FireflyRule {
   };
   Kind kind = Kind::keep;
   double limit = 1;  // of clamp; at least 1, finite
+
+  [[nodiscard]] bool spreads() const { return kind == Kind::spread; }
 };
 
 // What finds the neighbours; the result is the same.
