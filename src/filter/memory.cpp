@@ -51,7 +51,8 @@ std::uint64_t memory_per_record(const Parameters& parameters) {
   }
   if (parameters.fireflies.spreads()) {
     constexpr std::uint64_t kPlaces = 6 * kWord, kEnds = 16;
-    constexpr std::uint64_t kGifts = 12 * kWord;  // both ends of 6 a query, more than any scene has had
+    constexpr std::uint64_t kGifts =
+        12 * kWord;  // both ends of 6 a query, more than any scene has had
     // The tree over the queries has no sums, nor has the other one then.
     constexpr std::uint64_t kSumsOfBoth = 2 * (kSum + kSum / kQuad);
     bytes += kPlaces + kEnds + kGifts + tree_bytes(kVector + compared(parameters)) - kSumsOfBoth;
