@@ -191,7 +191,7 @@ void check(const run::Dump& dump, const ExplainRequest& request) {
   if (request.parameters.fit != filter::BallFit::mean) {
     refuse("`fit`: only means can be explained, source by source; give `fit mean`");
   }
-  if (request.parameters.fireflies.kind != filter::FireflyRule::Kind::keep) {
+  if (!request.parameters.fireflies.keeps()) {
     refuse(
         "`fireflies`: only what is averaged like any other can be explained; give `fireflies "
         "keep`");

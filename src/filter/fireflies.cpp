@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "core/interrupt.h"
@@ -61,7 +62,7 @@ double kept_of(double y, double ordinary, const FireflyRule& rule, double n) {
 
 Fireflies::Fireflies(const Problem& problem, Engine& engine, std::span<const Rgb> values,
                      const Parameters& parameters, double n)
-    : queries_(problem.roles.queries), kept_(values.size(), 1.0f) {
+    : kept_(values.size(), 1.0f) {
   find(problem, values, mean_roots(problem, engine, values), parameters.fireflies, n);
   if (parameters.fireflies.spreads() && !records_.empty()) {
     find_receivers(problem, parameters.engine);
@@ -116,47 +117,43 @@ std::vector<float> Fireflies::reaches(const Problem& problem, EngineKind engine)
 }
 
 void Fireflies::find_receivers(const Problem& problem, EngineKind engine) {
-  std::vector<std::uint32_t> place(problem.records.size());  // of a query among the queries
-  for (std::size_t q = 0; q < queries_.size(); ++q) {
-    place[queries_[q]] = static_cast<std::uint32_t>(q);
-  }
   const std::vector<float> reach = reaches(problem, engine);
-  std::vector<std::vector<std::uint32_t>> receivers(records_.size());  // places of queries
+  std::vector<std::vector<std::uint32_t>> receivers(records_.size());
   inverse_.resize(records_.size());
   make_lists(engine, problem, records_, reach)->each([&](std::size_t g, auto near) {
     const std::uint32_t j = records_[g];
-    receivers[g].push_back(place[j]);
+    receivers[g].push_back(j);
     std::uint64_t sources = 1;  // N_j: as in a mean, sources stand for the queries around them
     for (const std::uint32_t i : near) {
       if (i == j || !alike(problem, i, j)) continue;
-      receivers[g].push_back(place[i]);
+      receivers[g].push_back(i);
       if (problem.roles.of[i] == Role::source) ++sources;
     }
     inverse_[g] = 1 / static_cast<double>(sources);
   });
 
-  first_.assign(queries_.size() + 1, 0);
+  first_.assign(problem.records.size() + 1, 0);
   for (const auto& some : receivers) {
-    for (const std::uint32_t q : some) ++first_[q + 1];
+    for (const std::uint32_t i : some) ++first_[i + 1];
   }
-  for (std::size_t q = 0; q < queries_.size(); ++q) first_[q + 1] += first_[q];
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
   givers_.resize(first_.back());
   std::vector<std::uint64_t> next(first_.begin(), first_.end() - 1);
   for (std::size_t g = 0; g < receivers.size(); ++g) {
-    for (const std::uint32_t q : receivers[g]) givers_[next[q]++] = static_cast<std::uint32_t>(g);
+    for (const std::uint32_t i : receivers[g]) givers_[next[i]++] = static_cast<std::uint32_t>(g);
     receivers[g] = {};
   }
 }
 
 void Fireflies::give(std::span<const Rgb> values, std::span<Rgb> out) const {
-  core::parallel_for(queries_.size(), kFireflyGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t q = begin; q < end; ++q) {
+  core::parallel_for(out.size(), kFireflyGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
       Sum sum;
-      for (std::uint64_t k = first_[q]; k < first_[q + 1]; ++k) {
+      for (std::uint64_t k = first_[i]; k < first_[i + 1]; ++k) {
         const std::uint32_t j = records_[givers_[k]];
         sum.add(values[j], (1 - double{kept_[j]}) * inverse_[givers_[k]]);
       }
-      out[queries_[q]] = sum.over(1);
+      out[i] = sum.over(1);
     }
   });
 }

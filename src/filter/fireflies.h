@@ -15,7 +15,7 @@ class Fireflies {
  public:
   // Finds the fireflies among the sources, as problem.radius and the weights see them, and whom they
   // give what they do not keep, where parameters.fireflies says so. `values`, by record number: what
-  // is averaged. `engine` is of `problem`, whose roles must outlive this. `n`: that of the block. Throws Error{interrupted} on ^C.
+  // is averaged. `engine` is of `problem`. `n`: that of the block. Throws Error{interrupted} on ^C.
   Fireflies(const Problem& problem, Engine& engine, std::span<const Rgb> values,
             const Parameters& parameters, double n);
 
@@ -27,7 +27,7 @@ class Fireflies {
   [[nodiscard]] std::span<const float> kept() const { return kept_; }
   // Whether what is not kept is given away; otherwise it is lost.
   [[nodiscard]] bool gives() const { return !first_.empty(); }
-  // Sets out[i], of every query i, to what it is given: the sum over the fireflies j that reach it of
+  // Sets out[i], of every record i, to what it is given: the sum over the fireflies j that reach it of
   // (1 - p_j) v_j / N_j. `values`, by record number: v.
   void give(std::span<const Rgb> values, std::span<Rgb> out) const;
 
@@ -40,13 +40,12 @@ class Fireflies {
   [[nodiscard]] std::vector<float> reaches(const Problem& problem, EngineKind engine) const;
   void find_receivers(const Problem& problem, EngineKind engine);
 
-  std::span<const std::uint32_t> queries_;
   std::vector<float> kept_;
   std::vector<std::uint32_t> records_;
   std::vector<float> luminance_;        // of these
   double light_apart_ = 0, light_ = 0;  // luminance of all sources: what is not kept, and all
 
-  // By place in queries_: the givers of q are givers_[first_[q]] up to givers_[first_[q + 1]], places
+  // By record number: the givers of i are givers_[first_[i]] up to givers_[first_[i + 1]], places
   // in records_.
   std::vector<std::uint64_t> first_;
   std::vector<std::uint32_t> givers_;

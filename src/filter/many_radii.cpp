@@ -50,8 +50,7 @@ struct Scales {
 bool can_share(const Parameters& parameters) {
   return parameters.iterations == 1 && parameters.engine == EngineKind::flann &&
          !parameters.count_refusals && parameters.fit == BallFit::mean &&
-         parameters.fireflies.kind == FireflyRule::Kind::keep &&
-         info(parameters.estimator).shares_traversal;
+         parameters.fireflies.keeps() && info(parameters.estimator).shares_traversal;
 }
 
 class Many {

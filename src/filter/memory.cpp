@@ -46,11 +46,11 @@ std::uint64_t memory_per_record(const Parameters& parameters) {
   std::uint64_t bytes = kResult + kLists + kRadius + estimator.bytes;
   if (parameters.demodulate || parameters.iterations > 1) bytes += kVector;  // values to average
   if (parameters.fit == BallFit::linear) bytes += kVector + 2 * kWord;       // normals, luminances
-  if (parameters.fireflies.kind != FireflyRule::Kind::keep) {
+  if (!parameters.fireflies.keeps()) {
     bytes += 2 * kVector + kWord;  // values without what is apart, that, and what is kept
   }
   if (parameters.fireflies.spreads()) {
-    constexpr std::uint64_t kPlaces = 6 * kWord, kEnds = 16;
+    constexpr std::uint64_t kPlaces = 5 * kWord, kEnds = 16;
     constexpr std::uint64_t kGifts =
         12 * kWord;  // both ends of 6 a query, more than any scene has had
     // The tree over the queries has no sums, nor has the other one then.
@@ -84,7 +84,7 @@ std::uint64_t memory_per_record_of_window(const Parameters& parameters, std::uin
 
 std::uint64_t memory_per_layer(const Parameters& parameters) {
   // The average, what is averaged in place of the contribution, and what is given.
-  const bool apart = parameters.fireflies.kind != FireflyRule::Kind::keep;
+  const bool apart = !parameters.fireflies.keeps();
   const std::uint64_t values = (apart ? 3u : 2u) * kVector;
   // Of engine/tree_sums.h: a source's, and its shares of its quad's, its group's and its parent's.
   constexpr std::uint64_t kSums = kSum + kSum / kQuad + (kSum + kGroup - 1) / kGroup + 1;

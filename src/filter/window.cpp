@@ -96,7 +96,7 @@ void WindowTerms::validate_with(const Parameters& parameters) const {
                 "`fit`: what other frames bring is added to a mean; give `fit mean`, or leave out "
                 "the window");
   }
-  if (parameters.fireflies.kind != FireflyRule::Kind::keep) {
+  if (!parameters.fireflies.keeps()) {
     throw Error(ErrorCode::usage,
                 "`fireflies`: what other frames bring is averaged like any other; give `fireflies "
                 "keep`, or leave out the window");

@@ -34,7 +34,7 @@ std::vector<std::string> AblationSheet::head(const run::Dump& dump) const {
   if (parameters_.fit != filter::BallFit::mean) {
     facts += ", fit " + filter::find_parameter("fit").text(parameters_);
   }
-  if (parameters_.fireflies.kind != filter::FireflyRule::Kind::keep) {
+  if (!parameters_.fireflies.keeps()) {
     facts += ", fireflies " + filter::to_text(parameters_.fireflies);
   }
   std::vector<std::string> lines = {dump.metadata().scene.empty() ? dump_name

@@ -79,7 +79,7 @@ ConvergeReport check_analytic(
     if (set.fit != filter::BallFit::mean) {
       throw Error(ErrorCode::usage, "`fit`: the theory is that of means; give `fit mean`");
     }
-    if (set.fireflies.kind != filter::FireflyRule::Kind::keep) {
+    if (!set.fireflies.keeps()) {
       throw Error(ErrorCode::usage, "`fireflies`: the theory knows none; give `fireflies keep`");
     }
     set.block = {filter::BlockSize::Kind::passes, 2, 16, 1};

@@ -44,6 +44,22 @@ struct EngineCase {
   }
 };
 
+// The same with the contributions cut into two layers.
+inline filter::Estimates filtered_in_two(const EngineCase& c, filter::EngineKind kind) {
+  std::array<std::vector<Rgb>, 2> parts;
+  for (std::size_t i = 0; i < c.set.size(); ++i) {
+    const float share = static_cast<float>(i % 4) / 3;
+    parts[0].push_back(c.set.contribution[i] * share);
+    parts[1].push_back(c.set.contribution[i] * (1 - share));
+  }
+  const std::array<filter::Layer, 2> layers = {{{parts[0], {}}, {parts[1], {}}}};
+  filter::Parameters chosen = c.parameters;
+  chosen.engine = kind;
+  filter::Records records = c.set.view();
+  records.layers = layers;
+  return filter::estimate(records, c.radius, {0, 1, 1.5, c.cameras}, chosen);
+}
+
 // What there is to say of the first difference; nothing where there is none. `tolerance`: of
 // averages, relative; 0 asks for the same bytes.
 inline std::string difference(const filter::Estimates& a, const filter::Estimates& b,

@@ -255,20 +255,9 @@ TEST_CASE("Layers of spread light add up, iterated and demodulated too") {
   EngineCase c = some_case(900, 6, 0.2f, false, false);
   c.parameters.demodulate = true;
   c.parameters.iterations = 2;
-  std::array<std::vector<Rgb>, 2> parts;
-  for (std::size_t i = 0; i < c.set.size(); ++i) {
-    const float share = static_cast<float>(i % 4) / 3;
-    parts[0].push_back(c.set.contribution[i] * share);
-    parts[1].push_back(c.set.contribution[i] * (1 - share));
-  }
-  const std::array<filter::Layer, 2> layers = {{{parts[0], {}}, {parts[1], {}}}};
   for (const EngineKind engine : kEngines) {
-    c.parameters.engine = engine;
-    filter::Records records = c.set.view();
     const Estimates whole = c.filtered(engine);
-    records.layers = layers;
-    const Estimates layered =
-        filter::estimate(records, c.radius, {0, 1, 1.5, c.cameras}, c.parameters);
+    const Estimates layered = tests::filtered_in_two(c, engine);
     CHECK(tests::same_bytes(layered.c_bar, whole.c_bar));
     CHECK(whole.statistics.fireflies > 10);
     for (std::size_t i = 0; i < c.set.size(); ++i) {

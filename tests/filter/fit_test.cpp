@@ -283,20 +283,9 @@ TEST_CASE("Layers of a fit add up, and leave the whole as it is") {
   for (std::size_t i = 0; i < c.set.size(); ++i) {
     if (c.set.position[i].x < 0.7f) c.set.contribution[i] = Rgb(0, 0, 0);  // some fits are cut at 0
   }
-  std::array<std::vector<Rgb>, 2> parts;
-  for (std::size_t i = 0; i < c.set.size(); ++i) {
-    const float share = static_cast<float>(i % 4) / 3;
-    parts[0].push_back(c.set.contribution[i] * share);
-    parts[1].push_back(c.set.contribution[i] * (1 - share));
-  }
-  const std::array<filter::Layer, 2> layers = {{{parts[0], {}}, {parts[1], {}}}};
   for (const EngineKind engine : kEngines) {
-    c.parameters.engine = engine;
-    filter::Records records = c.set.view();
     const Estimates whole = c.filtered(engine);
-    records.layers = layers;
-    const Estimates layered =
-        filter::estimate(records, c.radius, {0, 1, 1.5, c.cameras}, c.parameters);
+    const Estimates layered = tests::filtered_in_two(c, engine);
     CHECK(tests::same_bytes(layered.c_bar, whole.c_bar));
     EngineCase mean = c;
     mean.parameters.fit = BallFit::mean;

@@ -158,7 +158,7 @@ inline void print_report(const FilterReport& report) {
                              p.radius.delta, filter::to_text(p.block)));
   line("weights", weights_text(p));
   if (p.fit == filter::BallFit::linear) line("fit", "linear in place and normal");
-  if (s.fireflies > 0 || p.fireflies.kind != filter::FireflyRule::Kind::keep) {
+  if (!p.fireflies.keeps()) {
     line("fireflies", fireflies_text(report));
   }
   const std::string layers = layers_text(report);
@@ -264,7 +264,7 @@ inline nlohmann::ordered_json to_json(const FilterReport& report) {
     json["photons"] = s.photons;
     json["photons_left_out"] = s.photons_left_out;
   }
-  if (report.parameters.fireflies.kind != filter::FireflyRule::Kind::keep) {
+  if (!report.parameters.fireflies.keeps()) {
     json["fireflies"] = {
         {"count", s.fireflies}, {"light", s.light}, {"light_apart", s.light_apart}};
   }

@@ -58,7 +58,7 @@ class Averages {
     for (Part& part : parts_) {
       const std::span<const Rgb> all = values(part);
       if (fireflies.gives()) {
-        part.gifts.assign(all.size(), Rgb(0, 0, 0));
+        part.gifts.resize(all.size());
         fireflies.give(all, part.gifts);
       }
       if (part.given.empty()) part.given.assign(all.begin(), all.end());
@@ -152,7 +152,7 @@ Estimates apply_engine(const MethodInput& input, const EngineSteps& steps) {
   Problem problem{records, roles, given, weights, area};
   std::unique_ptr<Engine> engine;
   double seconds_of_fireflies = 0;
-  if (parameters.fireflies.kind != FireflyRule::Kind::keep) {
+  if (!parameters.fireflies.keeps()) {
     engine = steps.engine(problem, block, parameters);
     const auto fireflies_start = Clock::now();
     const Fireflies fireflies(problem, *engine, averages.values(), parameters, block.n);

@@ -52,7 +52,7 @@ void Parameters::validate() const {
       fmt::format("`fit`: `estimator {}` is no mean over a ball that a fit could take the place "
                   "of; give `fit mean`",
                   info(estimator).name));
-  require(fireflies.kind == FireflyRule::Kind::keep || info(estimator).fits,
+  require(fireflies.keeps() || info(estimator).fits,
           fmt::format("`fireflies`: what is ordinary in a ball is told by a mean over it, and "
                       "`estimator {}` is none; give `fireflies keep`",
                       info(estimator).name));

@@ -60,6 +60,7 @@ struct FireflyRule {
   Kind kind = Kind::keep;
   double limit = 1;  // of clamp; at least 1, finite
 
+  [[nodiscard]] bool keeps() const { return kind == Kind::keep; }
   [[nodiscard]] bool spreads() const { return kind == Kind::spread; }
 };
 
