@@ -120,6 +120,8 @@ TEST_CASE("psf filter writes the layers of the light that --layers names") {
   const Outcome refused = work.run("psf filter IN.pvb -o OUT.exr --layers moon");
   CHECK(refused.code == 2);
   CHECK(refused.err.find("normal, alpha, fireflies, sun, sky") != std::string::npos);
+  CHECK(channels("fireflies --fireflies spread") == 6);
+  CHECK(work.run("psf filter IN.pvb -o OUT.exr --layers fireflies").code == 2);
 }
 
 TEST_CASE("A light of any name goes from the scene to the relit picture") {

@@ -131,7 +131,7 @@ void prepare(const FilterOptions& options, const FilterOptions& chosen, const Fr
   run.passes = of.frame.passes;
   run.window = of.window;
   fit_terms(dump, {&run.parameters, 1}, filter::asked_terms(chosen.given), notes);
-  check_layers(dump, options.layers, run.layers);
+  check_layers(dump, options.layers, run);
   const std::uint64_t last = run.passes.last.value_or(dump.pass_bounds().size() - 1);
   run.snapshots =
       snapshots_of(options.snapshots, last > run.passes.first ? last - run.passes.first : 0);

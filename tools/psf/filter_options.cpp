@@ -64,9 +64,15 @@ run::PictureLayers layers_of(const std::string& text) {
   return layers;
 }
 
-void check_layers(const run::Dump& dump, const std::string& text,
-                  const run::PictureLayers& layers) {
+void check_layers(const run::Dump& dump, const std::string& text, const run::FilterRequest& run) {
   if (text == "all") return;
+  const run::PictureLayers& layers = run.layers;
+  if (layers.fireflies && !run.parameters.fireflies.spreads()) {
+    throw Error(
+        ErrorCode::usage,
+        "--layers: fireflies are a layer where they are spread; give --fireflies spread, or "
+        "leave the layer out");
+  }
   const auto need = [&](const char* layer, const char* channel) {
     if (dump.has(channel)) return;
     throw Error(ErrorCode::bad_input,

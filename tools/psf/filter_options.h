@@ -11,6 +11,7 @@
 #include "cli.h"
 #include "filter/parameters/text.h"
 #include "run/dump.h"
+#include "run/filter_dump.h"
 #include "run/pictures.h"
 #include "run/window.h"
 
@@ -37,9 +38,9 @@ void fit_terms(const run::Dump& dump, std::span<filter::Parameters> sets, filter
                std::vector<std::string>& notes);
 // The layers that `text` names: a list, "all" or "none"; any name may be of a layer of the light.
 [[nodiscard]] run::PictureLayers layers_of(const std::string& text);
-// Throws Error{usage} for a name that is none, and Error{bad_input} for a layer of which the dump
-// lacks the channel.
-void check_layers(const run::Dump& dump, const std::string& text, const run::PictureLayers& layers);
+// Throws Error{usage} for a name that is none and for `fireflies` where none are spread, and
+// Error{bad_input} for a layer of which the dump lacks the channel.
+void check_layers(const run::Dump& dump, const std::string& text, const run::FilterRequest& run);
 
 // Each of these declares options, which write into `options`.
 void add_parameter_options(CLI::App& command, filter::ParameterTexts& options);
