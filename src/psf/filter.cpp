@@ -167,7 +167,7 @@ FilteredRecords filter_records(const Records& records, std::span<const Camera> c
     layers.normal = !view.normal.empty();
     layers.alpha = false;  // records in memory have none
     layers.fireflies = chosen.fireflies.spreads();
-    pictures.emplace_back(camera, layers);
+    pictures.emplace_back(camera, layers, chosen.pixels);
   }
   static_cast<void>(run::add_records(view, estimates, result.radius, 0, columns.size(), pictures));
   for (std::size_t k = 0; k < pictures.size(); ++k) {

@@ -203,7 +203,7 @@ ChannelSet Dump::select(const filter::Parameters& parameters, bool guides) const
     });
   }
   set.photons = photon_channels(*reader_, parameters);
-  if (guides) {
+  if (guides || parameters.pixels != filter::PixelRule::keep) {
     set.normal = find("normal");
     set.reflectance = find("reflectance");
   }

@@ -98,7 +98,7 @@ class DumpFilter {
     layers.alpha = layers.alpha && blocks_.channels().coverage.has_value();
     layers.fireflies = layers.fireflies && run_.parameters.fireflies.spreads();
     for (const filter::CameraView& camera : dump_.cameras()) {
-      outcome_.pictures.emplace_back(camera, layers);
+      outcome_.pictures.emplace_back(camera, layers, run_.parameters.pixels);
       if (run_.with_noise) outcome_.noise.emplace_back(camera);
     }
   }
@@ -110,6 +110,8 @@ class DumpFilter {
         CameraPictures::kBytesOfSums + layers * CameraPictures::kBytesOfSumsALayer +
         (alpha ? CameraPictures::kBytesOfSumsOfAlpha : 0) +
         (run_.parameters.fireflies.spreads() ? CameraPictures::kBytesOfFireflies : 0) +
+        (run_.parameters.pixels == filter::PixelRule::keep ? 0
+                                                           : CameraPictures::kBytesOfSecondPass) +
         (run_.with_noise ? NoiseMoments::kBytesAPixel : 0);
     const std::uint64_t writing = CameraPictures::kBytesToWrite +
                                   layers * CameraPictures::kBytesToWriteALayer +

@@ -23,12 +23,18 @@ using core::seconds_since;
 // Pictures beside those that grow: of a last block that is not whole, and one to look at.
 constexpr std::uint64_t kCopies = 2;
 
+// Statistics and three planes of one picture.
+constexpr std::uint64_t kBytesToRegress =
+    PixelFeatures::kBytesToRegress + 3 * PixelFeatures::kBytesToRegressAPlane;
+
 MemoryRequest request_of(const ManyRequest& run, std::size_t last, std::size_t radii) {
   return {run.parameters,
           run.passes.first,
           last,
           run.max_memory,
-          kCopies * run.parts * ManyPictures::bytes_of_sums(radii) + ManyAdder::kBytesAPixel,
+          kCopies * run.parts * ManyPictures::bytes_of_sums(radii, run.parameters.pixels) +
+              ManyAdder::kBytesAPixel +
+              (run.parameters.pixels == filter::PixelRule::keep ? 0 : kBytesToRegress),
           ManyAdder::memory(radii),
           filter::kManyBytesPerRecord};
 }
@@ -56,7 +62,7 @@ class ManyFilter {
         plan_memory(dump_, blocks_.channels(), request_of(run_, last_, run_.radii.size()));
     for (std::size_t part = 0; part < run_.parts; ++part) {
       for (const filter::CameraView& camera : dump_.cameras()) {
-        outcome_.pictures.emplace_back(camera, run_.radii.size());
+        outcome_.pictures.emplace_back(camera, run_.radii.size(), run_.parameters.pixels);
       }
     }
     outcome_.statistics.resize(run_.radii.size());

@@ -26,14 +26,24 @@ Rgb mean(const double* sum, const double* more, double paths) {
           static_cast<float>((sum[2] + more[2]) / paths)};
 }
 
+void add_squares(const Rgb& value, double* squares) {
+  for (int c = 0; c < 3; ++c) squares[c] += double{value[c]} * double{value[c]};
+}
+
 }  // namespace
 
-ManyPictures::ManyPictures(const filter::CameraView& camera, std::size_t radii)
+ManyPictures::ManyPictures(const filter::CameraView& camera, std::size_t radii,
+                           filter::PixelRule rule)
     : groups_(core::range_count(radii, kTogether)),
       filtered_(groups_ * kTogether * 3 * camera.width * camera.height),
       u_(std::size_t{camera.width} * camera.height * 3),
       paths_(std::size_t{camera.width} * camera.height),
-      input_(camera.width, camera.height) {}
+      input_(camera.width, camera.height) {
+  if (rule == filter::PixelRule::keep) return;
+  squares_.resize(filtered_.size());
+  u_squares_.resize(u_.size());
+  features_ = PixelFeatures(camera);
+}
 
 bool ManyPictures::overflows(const filter::Records& records, filter::Role role, std::size_t i) {
   return role == filter::Role::source &&
@@ -50,6 +60,10 @@ void ManyPictures::add_record(const filter::Records& records, filter::Role role,
   sum[1] += double{u.y};
   sum[2] += double{u.z};
   ++paths_[pixel];
+  if (!features_.empty()) {
+    features_.add(records, role, i);
+    if (!filter::is_query(role)) add_squares(u, &u_squares_[std::size_t{pixel} * 3]);
+  }
   if (role == filter::Role::no_vertex) input_.add(pixel, u);
   if (role != filter::Role::source) return;
   input_.add(pixel, path_radiance(u, records.throughput[i], records.contribution[i]));
@@ -66,11 +80,13 @@ void ManyPictures::add_filtered(const filter::Records& records, std::size_t i, s
     kept = without_overflows(u, records.throughput[i], c_bar);
     c_bar = kept;
   }
-  double* sums = &filtered_[records.pixel[i] * groups_ * kTogether * 3];
+  const std::size_t pixel = place_of(records.pixel[i], 0);
   for (std::size_t k = 0; k < c_bar.size();) {
     const std::size_t begin = (first + k) % kTogether, group = (first + k) / kTogether;
     const std::size_t count = std::min(kTogether - begin, c_bar.size() - k);
-    std::uint32_t bits = add_group(records.throughput[i], sums + group * kTogether * 3, begin,
+    const std::size_t place = pixel + group * kTogether * 3;
+    std::uint32_t bits = add_group(u, records.throughput[i], &filtered_[place],
+                                   squares_.empty() ? nullptr : &squares_[place], begin,
                                    c_bar.subspan(k, count));
     for (std::size_t radius = first + k; bits != 0; ++radius, bits >>= 1) {
       if ((bits & 1) != 0) overflows(radius);
@@ -79,8 +95,8 @@ void ManyPictures::add_filtered(const filter::Records& records, std::size_t i, s
   }
 }
 
-std::uint32_t ManyPictures::add_group(const Rgb& alpha, double* sum, std::size_t first,
-                                      std::span<const Rgb> c_bar) {
+std::uint32_t ManyPictures::add_group(const Rgb& u, const Rgb& alpha, double* sum, double* squares,
+                                      std::size_t first, std::span<const Rgb> c_bar) {
   constexpr std::size_t kValues = 3 * kTogether, kPattern = 12;
   static_assert(kValues % kPattern == 0);
   // What is not asked for is 0, so that all loops have one length, which compilers turn into
@@ -110,6 +126,12 @@ std::uint32_t ManyPictures::add_group(const Rgb& alpha, double* sum, std::size_t
     }
   }
   for (std::size_t t = 0; t < kValues; ++t) sum[t] += double{value[t]};
+  if (squares == nullptr) return overflows;
+  for (std::size_t k = first; k < first + c_bar.size(); ++k) {
+    if ((overflows >> k & 1) != 0) continue;
+    const float* one = value + 3 * k;
+    add_squares(Rgb(u.x + one[0], u.y + one[1], u.z + one[2]), squares + 3 * k);
+  }
   return overflows;
 }
 
@@ -120,21 +142,50 @@ void ManyPictures::leave_out(const filter::Records& records, std::size_t i, std:
   for (int c = 0; c < 3; ++c) missing.u[c] += double{u[c]};
 }
 
+ManyPictures::Paths ManyPictures::paths_of(std::uint32_t pixel, std::size_t k) const {
+  const double* u = &u_[std::size_t{pixel} * 3];
+  Paths paths = {static_cast<double>(paths_[pixel]), {u[0], u[1], u[2]}};
+  const auto missing = missing_.find({pixel, k});
+  if (missing == missing_.end()) return paths;
+  paths.count -= static_cast<double>(missing->second.paths);
+  for (int c = 0; c < 3; ++c) paths.u[c] -= missing->second.u[c];
+  return paths;
+}
+
 std::vector<Rgb> ManyPictures::filtered(std::size_t k) const {
   std::vector<Rgb> picture(paths_.size());
   for (std::size_t pixel = 0; pixel < picture.size(); ++pixel) {
-    picture[pixel] =
-        mean(filtered_sum(pixel, k), &u_[pixel * 3], static_cast<double>(paths_[pixel]));
+    const Paths paths = paths_of(static_cast<std::uint32_t>(pixel), k);
+    picture[pixel] = mean(&filtered_[place_of(pixel, k)], paths.u, paths.count);
   }
-  for (const auto& [where, missing] : missing_) {
-    const auto& [pixel, radius] = where;
-    if (radius != k) continue;
-    const double* u = &u_[std::size_t{pixel} * 3];
-    const double left[3] = {u[0] - missing.u[0], u[1] - missing.u[1], u[2] - missing.u[2]};
-    picture[pixel] =
-        mean(filtered_sum(pixel, k), left, static_cast<double>(paths_[pixel] - missing.paths));
-  }
+  if (!features_.empty()) regress(k, picture);
   return picture;
+}
+
+void ManyPictures::regress(std::size_t k, std::vector<Rgb>& picture) const {
+  const std::size_t size = picture.size();
+  filter::PixelStatistics statistics = features_.statistics();
+  std::vector<float> values(3 * size);
+  for (std::size_t pixel = 0; pixel < size; ++pixel) {
+    const Paths paths = paths_of(static_cast<std::uint32_t>(pixel), k);
+    const double* sum = &filtered_[place_of(pixel, k)];
+    const double* squares = &squares_[place_of(pixel, k)];
+    double radiance[3], of_radiance[3];
+    for (std::size_t c = 0; c < 3; ++c) {
+      radiance[c] = sum[c] + paths.u[c];
+      of_radiance[c] = squares[c] + u_squares_[3 * pixel + c];
+      values[c * size + pixel] = picture[pixel][static_cast<int>(c)];
+    }
+    PixelFeatures::set_radiance(statistics, pixel, paths.count, radiance, of_radiance);
+  }
+  std::vector<filter::PixelPlane> planes;
+  for (std::size_t c = 0; c < 3; ++c) {
+    planes.push_back({std::span(values).subspan(c * size, size), c});
+  }
+  filter::second_pass(statistics, planes);
+  for (std::size_t pixel = 0; pixel < size; ++pixel) {
+    picture[pixel] = Rgb(values[pixel], values[size + pixel], values[2 * size + pixel]);
+  }
 }
 
 std::vector<Rgb> ManyPictures::unfiltered() const {

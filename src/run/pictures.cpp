@@ -73,7 +73,8 @@ std::uint64_t keep(const Records& records, const Estimates& estimates,
 
 }  // namespace
 
-CameraPictures::CameraPictures(const filter::CameraView& camera, const PictureLayers& layers)
+CameraPictures::CameraPictures(const filter::CameraView& camera, const PictureLayers& layers,
+                               filter::PixelRule rule)
     : layer_names_(layers.light.value_or(std::vector<std::string>())),
       filtered_(camera.width, camera.height, 1 + layer_names_.size() + (layers.alpha ? 1 : 0)),
       unfiltered_(camera.width, camera.height, 1 + layer_names_.size() + (layers.alpha ? 1 : 0)),
@@ -82,7 +83,11 @@ CameraPictures::CameraPictures(const filter::CameraView& camera, const PictureLa
       albedo_(layers.albedo ? camera.width : 0, layers.albedo ? camera.height : 0),
       normal_(layers.normal ? camera.width : 0, layers.normal ? camera.height : 0),
       alpha_(layers.alpha ? camera.width : 0, layers.alpha ? camera.height : 0),
-      fireflies_(layers.fireflies ? camera.width : 0, layers.fireflies ? camera.height : 0) {}
+      fireflies_(layers.fireflies ? camera.width : 0, layers.fireflies ? camera.height : 0) {
+  if (rule == filter::PixelRule::keep) return;
+  features_ = PixelFeatures(camera);
+  moments_.resize(6 * std::size_t{camera.width} * camera.height);
+}
 
 void CameraPictures::add(const Records& records, const Estimates& estimates,
                          std::span<const float> radius, std::size_t i) {
@@ -104,6 +109,7 @@ void CameraPictures::add(const Records& records, const Estimates& estimates,
   }
   add_guides(records, i, vertex);
   add_fireflies(records, estimates, i, vertex);
+  add_to_features(records, role, radiance.filtered, i);
 }
 
 void CameraPictures::add_layer(std::size_t k, const Records& records, const Estimates& estimates,
@@ -141,6 +147,27 @@ void CameraPictures::add_fireflies(const Records& records, const Estimates& esti
   const bool spread = vertex && !estimates.given.empty();
   const Rgb light = spread ? records.throughput[i] * estimates.given[i] : Rgb(0, 0, 0);
   if (is_finite(light)) fireflies_.add(records.pixel[i], light);
+}
+
+void CameraPictures::add_to_features(const Records& records, Role role, const Rgb& radiance,
+                                     std::size_t i) {
+  if (features_.empty()) return;
+  features_.add(records, role, i);
+  double* moments = &moments_[6 * std::size_t{records.pixel[i]}];
+  for (int c = 0; c < 3; ++c) {
+    moments[c] += double{radiance[c]};
+    moments[3 + c] += double{radiance[c]} * double{radiance[c]};
+  }
+}
+
+filter::PixelStatistics CameraPictures::statistics() const {
+  filter::PixelStatistics statistics = features_.statistics();
+  for (std::size_t pixel = 0; pixel < statistics.paths.size(); ++pixel) {
+    const double* moments = &moments_[6 * pixel];
+    PixelFeatures::set_radiance(statistics, pixel, static_cast<double>(statistics.paths[pixel]),
+                                moments, moments + 3);
+  }
+  return statistics;
 }
 
 std::vector<float> CameraPictures::filled(std::size_t part) const {
@@ -186,19 +213,26 @@ film::Image CameraPictures::image() const {
     std::string channel;
     const film::Film* film;
     std::size_t component;
+    // What the second pass makes of it; nothing: it stays.
+    std::optional<std::size_t> colour;
   };
   std::vector<Plane> planes;
   const auto add = [&](const std::string& prefix, const std::string& suffixes,
                        const film::Film& film, std::size_t first = 0) {
     for (std::size_t k = 0; k < suffixes.size(); ++k) {
-      planes.push_back({prefix + suffixes[k], &film, first + k});
+      planes.push_back({prefix + suffixes[k], &film, first + k, {}});
+    }
+  };
+  const auto add_light = [&](const std::string& prefix, const film::Film& film, std::size_t first) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      planes.push_back({prefix + "RGB"[c], &film, first + c, c});
     }
   };
   const std::string unfiltered = std::string(film::kUnfiltered) + ".";
   // Where a pixel has no path of its own, filled() takes those around.
   const bool has_holes = layers_.unfiltered && !unfiltered_.has_path_everywhere();
   for (std::size_t part = 0; part < prefixes.size(); ++part) {
-    add(prefixes[part], "RGB", filtered_, 3 * part);
+    add_light(prefixes[part], filtered_, 3 * part);
     if (layers_.unfiltered && !has_holes) {
       add(unfiltered + prefixes[part], "RGB", unfiltered_, 3 * part);
     }
@@ -207,12 +241,23 @@ film::Image CameraPictures::image() const {
   if (layers_.radius) add("radius.", "Y", details_, 1);
   if (layers_.albedo) add("albedo.", "RGB", albedo_);
   if (layers_.normal) add("normal.", "XYZ", normal_);
-  if (layers_.alpha) add("", "A", alpha_);
-  if (layers_.fireflies) add("fireflies.", "RGB", fireflies_);
+  if (layers_.alpha) planes.push_back({"A", &alpha_, 0, filter::PixelPlane::kNoLight});
+  if (layers_.fireflies) add_light("fireflies.", fireflies_, 0);
   image.layers.resize(planes.size());
   core::parallel_for(planes.size(), 1, [&](std::size_t k, std::size_t) {
     image.layers[k] = {planes[k].channel, planes[k].film->mean(planes[k].component)};
   });
+  if (!features_.empty()) {
+    std::vector<filter::PixelPlane> regressed;
+    for (std::size_t k = 0; k < planes.size(); ++k) {
+      if (planes[k].colour) regressed.push_back({image.layers[k].values, *planes[k].colour});
+    }
+    filter::second_pass(statistics(), regressed);
+    for (std::size_t k = 0; k < planes.size(); ++k) {
+      if (planes[k].film != &alpha_) continue;
+      for (float& value : image.layers[k].values) value = std::clamp(value, 0.0f, 1.0f);
+    }
+  }
   if (has_holes) {
     for (std::size_t part = 0; part < prefixes.size(); ++part) {
       image.add(unfiltered + prefixes[part], "RGB", filled(part));

@@ -12,7 +12,9 @@
 #include "film/film.h"
 #include "film/image.h"
 #include "filter/estimate.h"
+#include "filter/parameters/parameters.h"
 #include "filter/records.h"
+#include "run/pixel_features.h"
 
 namespace psf::run {
 
@@ -33,7 +35,8 @@ struct PictureLayers {
 class CameraPictures {
  public:
   // `layers.light`: the names of the layers that the records will have, in their order.
-  CameraPictures(const filter::CameraView& camera, const PictureLayers& layers);
+  CameraPictures(const filter::CameraView& camera, const PictureLayers& layers,
+                 filter::PixelRule rule);
 
   // Adds record i of a filtered block [pixel], without its layers of the light. Add the records of
   // a pixel in path order, from one thread, which are all finite.
@@ -55,6 +58,8 @@ class CameraPictures {
   // fireflies.R/G/B: alpha times what [fireflies] have spread, a part of the filtered picture.
   // Of each layer of the light what there is of the whole: NAME.R/G/B, and unfiltered-input.NAME;
   // the attribute film::kLightLayers has their names.
+  // With PixelRule::regress the filtered picture, A, fireflies and all parts of the light have gone
+  // through filter::second_pass().
   [[nodiscard]] film::Image image() const;
 
   [[nodiscard]] bool has_alpha() const { return layers_.alpha; }
@@ -70,6 +75,9 @@ class CameraPictures {
   static constexpr std::uint64_t kBytesToWrite = sizeof(float) * 2 * 14;
   static constexpr std::uint64_t kBytesOfSumsOfAlpha = kBytesOfFilm + sizeof(double) * 2 * 3;
   static constexpr std::uint64_t kBytesToWriteOfAlpha = sizeof(float) * 2 * 7;
+  static constexpr std::uint64_t kBytesOfSecondPass =
+      PixelFeatures::kBytesAPixel + 6 * sizeof(double) + PixelFeatures::kBytesToRegress +
+      3 * PixelFeatures::kBytesToRegressAPlane;
   static constexpr std::uint64_t kBytesOfFireflies = kBytesOfFilm + sizeof(float) * 2 * 3;
   static constexpr std::uint64_t kBytesOfSumsALayer = sizeof(double) * 2 * 3;
   static constexpr std::uint64_t kBytesToWriteALayer = sizeof(float) * 2 * 6;
@@ -83,6 +91,9 @@ class CameraPictures {
   void add_guides(const filter::Records& records, std::size_t i, bool vertex);
   void add_fireflies(const filter::Records& records, const filter::Estimates& estimates,
                      std::size_t i, bool vertex);
+  void add_to_features(const filter::Records& records, filter::Role role, const Rgb& radiance,
+                       std::size_t i);
+  [[nodiscard]] filter::PixelStatistics statistics() const;
 
   std::vector<std::string> layer_names_;  // of the light
   // Parts: the whole, then the layers, then the background where it is kept apart.
@@ -92,6 +103,8 @@ class CameraPictures {
   film::Film albedo_, normal_;
   film::Film alpha_;  // coverage, 0, 0
   film::Film fireflies_;
+  PixelFeatures features_;       // empty: there is no second pass
+  std::vector<double> moments_;  // (pixels, 6): sums of the filtered radiance and of its squares
 };
 
 // Adds the records [first, last) of a filtered block to the pictures of their cameras. Threads

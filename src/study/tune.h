@@ -69,7 +69,7 @@ struct TuneRequest {
 
 // Estimates the error of each set. The blocks, filtered as in the whole run, go to four parts in
 // turn, or to two parts where a set has fewer than four blocks. Each part gives a filtered picture
-// F, and the picture A of the same paths without filter. Throws Error{usage} where a set has only
+// F, and the picture A of the same paths without filter; without second pass. Throws Error{usage} where a set has only
 // one block, and what filter_many() throws.
 [[nodiscard]] TuneResult tune(const run::Dump& dump, const TuneRequest& tune);
 

@@ -64,6 +64,12 @@ struct FireflyRule {
   [[nodiscard]] bool spreads() const { return kind == Kind::spread; }
 };
 
+// What becomes of a pixel's mean over its filtered paths.
+enum class PixelRule : std::uint8_t {
+  keep,    // it is the picture
+  regress  // [second]: it gives way to a fit over the pixels around
+};
+
 // What finds the neighbours; the result is the same.
 enum class EngineKind : std::uint8_t {
   flann,  // engine/: FLANN over groups of records
@@ -84,6 +90,7 @@ struct Parameters {
   double agree = 1.5;
   BallFit fit = BallFit::mean;
   FireflyRule fireflies;
+  PixelRule pixels = PixelRule::keep;  // of pictures; estimates of records do not know it
   EngineKind engine = EngineKind::flann;
   bool count_refusals = false;  // pairs in the balls and refusals by term; about doubles the time
 

@@ -69,6 +69,7 @@ Parameter estimator_row() {
 }
 
 constexpr std::string_view kCountNames[] = {"samples", "blocks"};         // of RadiusCount
+constexpr std::string_view kPixelRuleNames[] = {"keep", "regress"};       // of PixelRule
 constexpr std::string_view kFitNames[] = {"mean", "linear"};              // of BallFit
 constexpr std::string_view kEngineNames[] = {"flann", "plain", "brute"};  // of EngineKind
 
@@ -164,6 +165,18 @@ const Parameter kAfterTerms[] = {
      {},
      [](const Parameters& p) { return to_text(p.fireflies); },
      [](Parameters& p, const std::string& text) { p.fireflies = parse_fireflies(text); }},
+    {"pixels",
+     "keep|regress",
+     "what is left of noise in single pixels of the filtered picture: keep it, or take a linear fit "
+     "over the pixels around that can have the same mean",
+     "of keep, regress",
+     {},
+     [](const Parameters& p) {
+       return std::string(kPixelRuleNames[static_cast<std::size_t>(p.pixels)]);
+     },
+     [](Parameters& p, const std::string& text) {
+       p.pixels = static_cast<PixelRule>(parse_name("pixels", text, kPixelRuleNames));
+     }},
     {"search",
      "flann|plain|brute",
      "engine: flann; the same result from plain FLANN, a search a record, or by brute force",
