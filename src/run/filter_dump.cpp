@@ -106,16 +106,19 @@ class DumpFilter {
   void set_last(std::size_t last) {
     const std::uint64_t layers = blocks_.channels().layers.size();
     const bool alpha = blocks_.channels().coverage.has_value();
-    const std::uint64_t sums =
-        CameraPictures::kBytesOfSums + layers * CameraPictures::kBytesOfSumsALayer +
-        (alpha ? CameraPictures::kBytesOfSumsOfAlpha : 0) +
-        (run_.parameters.fireflies.spreads() ? CameraPictures::kBytesOfFireflies : 0) +
-        (run_.parameters.pixels == filter::PixelRule::keep ? 0
-                                                           : CameraPictures::kBytesOfSecondPass) +
-        (run_.with_noise ? NoiseMoments::kBytesAPixel : 0);
+    const bool spread = run_.parameters.fireflies.spreads();
+    const bool regress = run_.parameters.pixels == filter::PixelRule::regress;
+    const std::uint64_t planes = 3 + 3 * layers + (alpha ? 4 : 0) + (spread ? 3 : 0);
+    const std::uint64_t sums = CameraPictures::kBytesOfSums +
+                               layers * CameraPictures::kBytesOfSumsALayer +
+                               (alpha ? CameraPictures::kBytesOfSumsOfAlpha : 0) +
+                               (spread ? CameraPictures::kBytesOfFireflies : 0) +
+                               (regress ? CameraPictures::kBytesOfSumsOfRegress : 0) +
+                               (run_.with_noise ? NoiseMoments::kBytesAPixel : 0);
     const std::uint64_t writing = CameraPictures::kBytesToWrite +
                                   layers * CameraPictures::kBytesToWriteALayer +
-                                  (alpha ? CameraPictures::kBytesToWriteOfAlpha : 0);
+                                  (alpha ? CameraPictures::kBytesToWriteOfAlpha : 0) +
+                                  (regress ? PixelFeatures::bytes_to_regress(planes) : 0);
     outcome_.memory = plan_memory(dump_, blocks_.channels(),
                                   {run_.parameters, first_, last, run_.max_memory,
                                    copies_ * sums + writing, 0, 0, window_.has_value()});

@@ -23,20 +23,18 @@ using core::seconds_since;
 // Pictures beside those that grow: of a last block that is not whole, and one to look at.
 constexpr std::uint64_t kCopies = 2;
 
-// Statistics and three planes of one picture.
-constexpr std::uint64_t kBytesToRegress =
-    PixelFeatures::kBytesToRegress + 3 * PixelFeatures::kBytesToRegressAPlane;
-
 MemoryRequest request_of(const ManyRequest& run, std::size_t last, std::size_t radii) {
-  return {run.parameters,
-          run.passes.first,
-          last,
-          run.max_memory,
-          kCopies * run.parts * ManyPictures::bytes_of_sums(radii, run.parameters.pixels) +
-              ManyAdder::kBytesAPixel +
-              (run.parameters.pixels == filter::PixelRule::keep ? 0 : kBytesToRegress),
-          ManyAdder::memory(radii),
-          filter::kManyBytesPerRecord};
+  return {
+      run.parameters,
+      run.passes.first,
+      last,
+      run.max_memory,
+      kCopies * run.parts * ManyPictures::bytes_of_sums(radii, run.parameters.pixels) +
+          ManyAdder::kBytesAPixel +
+          (run.parameters.pixels == filter::PixelRule::keep ? 0
+                                                            : PixelFeatures::bytes_to_regress(3)),
+      ManyAdder::memory(radii),
+      filter::kManyBytesPerRecord};
 }
 
 // With the distance, which tells how many pixels a radius is, whatever its unit.

@@ -85,9 +85,9 @@ void ManyPictures::add_filtered(const filter::Records& records, std::size_t i, s
     const std::size_t begin = (first + k) % kTogether, group = (first + k) / kTogether;
     const std::size_t count = std::min(kTogether - begin, c_bar.size() - k);
     const std::size_t place = pixel + group * kTogether * 3;
-    std::uint32_t bits = add_group(u, records.throughput[i], &filtered_[place],
-                                   squares_.empty() ? nullptr : &squares_[place], begin,
-                                   c_bar.subspan(k, count));
+    std::uint32_t bits =
+        add_group(u, records.throughput[i], &filtered_[place],
+                  squares_.empty() ? nullptr : &squares_[place], begin, c_bar.subspan(k, count));
     for (std::size_t radius = first + k; bits != 0; ++radius, bits >>= 1) {
       if ((bits & 1) != 0) overflows(radius);
     }

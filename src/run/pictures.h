@@ -75,9 +75,8 @@ class CameraPictures {
   static constexpr std::uint64_t kBytesToWrite = sizeof(float) * 2 * 14;
   static constexpr std::uint64_t kBytesOfSumsOfAlpha = kBytesOfFilm + sizeof(double) * 2 * 3;
   static constexpr std::uint64_t kBytesToWriteOfAlpha = sizeof(float) * 2 * 7;
-  static constexpr std::uint64_t kBytesOfSecondPass =
-      PixelFeatures::kBytesAPixel + 6 * sizeof(double) + PixelFeatures::kBytesToRegress +
-      3 * PixelFeatures::kBytesToRegressAPlane;
+  static constexpr std::uint64_t kBytesOfSumsOfRegress =
+      PixelFeatures::kBytesAPixel + 6 * sizeof(double);
   static constexpr std::uint64_t kBytesOfFireflies = kBytesOfFilm + sizeof(float) * 2 * 3;
   static constexpr std::uint64_t kBytesOfSumsALayer = sizeof(double) * 2 * 3;
   static constexpr std::uint64_t kBytesToWriteALayer = sizeof(float) * 2 * 6;

@@ -28,9 +28,11 @@ class PixelFeatures {
   [[nodiscard]] bool empty() const { return paths_.empty(); }
 
   static constexpr std::uint64_t kBytesAPixel = 9 * sizeof(double) + 2 * sizeof(std::uint64_t);
-  // Statistics, and the images that second_pass() makes of them; a plane's image more.
-  static constexpr std::uint64_t kBytesToRegress = (16 + 24) * sizeof(float);
-  static constexpr std::uint64_t kBytesToRegressAPlane = 2 * sizeof(float);
+  // Of the statistics, with the number of paths, and what second_pass() needs beside them for so many
+  // planes.
+  [[nodiscard]] static constexpr std::uint64_t bytes_to_regress(std::uint64_t planes) {
+    return 16 * sizeof(float) + sizeof(std::uint64_t) + filter::second_pass_bytes(planes);
+  }
 
  private:
   std::size_t width_ = 0, height_ = 0;

@@ -37,6 +37,9 @@ std::vector<std::string> AblationSheet::head(const run::Dump& dump) const {
   if (!parameters_.fireflies.keeps()) {
     facts += ", fireflies " + filter::to_text(parameters_.fireflies);
   }
+  if (parameters_.pixels != filter::PixelRule::keep) {
+    facts += ", pixels " + filter::find_parameter("pixels").text(parameters_);
+  }
   std::vector<std::string> lines = {dump.metadata().scene.empty() ? dump_name
                                                                   : dump.metadata().scene};
   lines.push_back(

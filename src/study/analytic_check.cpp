@@ -82,6 +82,10 @@ ConvergeReport check_analytic(
     if (!set.fireflies.keeps()) {
       throw Error(ErrorCode::usage, "`fireflies`: the theory knows none; give `fireflies keep`");
     }
+    if (set.pixels != filter::PixelRule::keep) {
+      throw Error(ErrorCode::usage,
+                  "`pixels`: the theory is that of the first pass; give `pixels keep`");
+    }
     set.block = {filter::BlockSize::Kind::passes, 2, 16, 1};
     set.weights = filter::WeightTerms::none();
     set.radius.basis = filter::RadiusBasis::footprint;

@@ -88,6 +88,7 @@ TEST_CASE("Every parameter is read from the text that it has, and says what else
       {"agree", {"1.5", "2.5"}},
       {"fit", {"mean", "linear"}},
       {"fireflies", {"keep", "clamp:4"}},
+      {"pixels", {"keep", "regress"}},
       {"search", {"flann", "brute"}}};
   REQUIRE(filter::parameter_table().size() == texts.size());
   for (const filter::Parameter& parameter : filter::parameter_table()) {
@@ -140,13 +141,14 @@ TEST_CASE("Every parameter is described, under the name of its option") {
   parameters.sources = 4;
   std::string all;
   for (const auto& [name, value] : filter::describe(parameters)) all += name + "=" + value + " ";
-  CHECK(all ==
-        "r0=8px delta=0.3333333333333333 radius-count=samples block=4passes normal=0.95 "
-        "reflectance=0.05 "
-        "visibility=on hit-distance=off plane=off direction=off material=off gloss=0.8 "
-        "demodulate=off "
-        "iterations=1 "
-        "sources=1/4 estimator=average agree=off fit=mean fireflies=keep search=flann ");
+  CHECK(
+      all ==
+      "r0=8px delta=0.3333333333333333 radius-count=samples block=4passes normal=0.95 "
+      "reflectance=0.05 "
+      "visibility=on hit-distance=off plane=off direction=off material=off gloss=0.8 "
+      "demodulate=off "
+      "iterations=1 "
+      "sources=1/4 estimator=average agree=off fit=mean fireflies=keep pixels=keep search=flann ");
 }
 
 TEST_CASE("Channels are asked for by the parameters that use them") {

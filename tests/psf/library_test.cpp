@@ -30,7 +30,7 @@ TEST_CASE("parameters are text by name, what is not set is the default") {
   CHECK(parameters.get("normal") == "off");
   CHECK(parameters.get("gloss") == "0.8");
   CHECK(parameters.no_weights().get("gloss") == "off");
-  CHECK(psf::Parameters::help().size() == 20);
+  CHECK(psf::Parameters::help().size() == 21);
   CHECK_THROWS_WITH(parameters.set("r1", "2"), StartsWith("there is no parameter 'r1'"));
   CHECK_THROWS_WITH(parameters.set("r0", "x"), StartsWith("`r0`: 'x' is no radius"));
   CHECK(parameters.get("r0") == "12px");

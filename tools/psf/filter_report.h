@@ -161,6 +161,7 @@ inline void print_report(const FilterReport& report) {
   if (!p.fireflies.keeps()) {
     line("fireflies", fireflies_text(report));
   }
+  if (p.pixels == filter::PixelRule::regress) line("pixels", "regressed over those around them");
   const std::string layers = layers_text(report);
   if (!layers.empty()) line("layers", layers);
   const std::string alpha = alpha_text(report);

@@ -167,7 +167,8 @@ const Parameter kAfterTerms[] = {
      [](Parameters& p, const std::string& text) { p.fireflies = parse_fireflies(text); }},
     {"pixels",
      "keep|regress",
-     "what is left of noise in single pixels of the filtered picture: keep it, or take a linear fit "
+     "what is left of noise in single pixels of the filtered picture: keep it, or take a linear "
+     "fit "
      "over the pixels around that can have the same mean",
      "of keep, regress",
      {},

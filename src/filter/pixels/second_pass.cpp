@@ -17,7 +17,7 @@ using pixels::kRows;
 using pixels::Layout;
 using pixels::PaddedImages;
 
-constexpr double kNoise = 0.016;    // epsilon of [second], for one path a pixel
+constexpr double kNoise = 0.016;        // epsilon of [second], for one path a pixel
 constexpr float kAPixelIs = 1 / 64.0f;  // the difference in position that counts as much as 1
 constexpr double kLeastShare = 1e-3, kMostTimes = 1e15;
 
@@ -67,7 +67,8 @@ class Input {
     set_radiance(scale);
     set_features();
     // The light itself, then the planes.
-    for (std::size_t c = 0; c < 3; ++c) set_plane(c, std::span(s_.radiance).subspan(c * size_, size_));
+    for (std::size_t c = 0; c < 3; ++c)
+      set_plane(c, std::span(s_.radiance).subspan(c * size_, size_));
     for (std::size_t p = 0; p < planes.size(); ++p) set_plane(3 + p, planes[p].values);
   }
 
@@ -204,8 +205,7 @@ void second_pass(const PixelStatistics& statistics, std::span<const PixelPlane> 
         for (std::size_t p = 0; p < planes.size(); ++p) {
           const std::size_t at = (3 + p) * kRows * kColumns + place;
           const double mean = tile.mean[at], step = steps[planes[p].colour];
-          planes[p].values[y * width + x] =
-              static_cast<float>(mean + step * (tile.fit[at] - mean));
+          planes[p].values[y * width + x] = static_cast<float>(mean + step * (tile.fit[at] - mean));
         }
       }
     }

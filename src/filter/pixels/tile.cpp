@@ -27,8 +27,7 @@ using Row = float[kVectors + 16];
 
 class Weights {
  public:
-  Weights(const PaddedImages& images, float noise)
-      : images_(images), noise_(hn::Set(kD, noise)) {}
+  Weights(const PaddedImages& images, float noise) : images_(images), noise_(hn::Set(kD, noise)) {}
 
   // For the tile whose first pixel is at place `at`, and the offset `to`.
   void set(std::size_t at, std::ptrdiff_t to) {
@@ -167,7 +166,7 @@ void fit_tile_on(const PaddedImages& images, const Layout& layout, float noise, 
           const V weight = weights.at(at, r, g * kLanes);
           if (hn::AllTrue(kD, hn::Eq(weight, hn::Zero(kD)))) continue;
           Moments::add(images, layout, at, Weights::moved(at, to), weight,
-                   tile.sums.data() + (r * kGroups + g) * count);
+                       tile.sums.data() + (r * kGroups + g) * count);
         }
       }
     }

@@ -39,11 +39,12 @@ class PaddedImages {
 struct Layout {
   std::size_t plane_count;  // the light in three colours, and what is to follow it
 
-  static constexpr std::size_t kRadiance = 0, kVariance = 3;  // three each, relative to the picture's
+  static constexpr std::size_t kRadiance = 0,
+                               kVariance = 3;     // three each, relative to the picture's
   static constexpr std::size_t kCounts = 6;       // 1 where a pixel counts; 0 elsewhere and outside
   static constexpr std::size_t kHasPosition = 7;  // 1 or 0
-  static constexpr std::size_t kScale = 8;        // a difference of positions times this is a feature
-  static constexpr std::size_t kFeatures = 9;     // reflectance, normal, vertices, position
+  static constexpr std::size_t kScale = 8;     // a difference of positions times this is a feature
+  static constexpr std::size_t kFeatures = 9;  // reflectance, normal, vertices, position
   static constexpr std::size_t kFeatureCount = 10, kOfPosition = 7;  // the last three
   static constexpr std::size_t kPlanes = kFeatures + kFeatureCount;
 };

@@ -1,0 +1,341 @@
+// The second pass against naive loops in long double, and what it leaves alone.
+#include "filter/pixels/second_pass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "catch.h"
+#include "core/parallel.h"
+#include "filter/engine/instruction_sets.h"
+
+namespace psf {
+namespace {
+
+using filter::PixelPlane;
+using filter::PixelStatistics;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// A picture with an edge, a gradient, pixels without vertices and without paths, and noise that
+// its variance tells.
+PixelStatistics picture(std::size_t width, std::size_t height, unsigned seed, double scale = 1) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  PixelStatistics s;
+  const std::size_t size = width * height;
+  s.width = width;
+  s.height = height;
+  s.paths.assign(size, 16);
+  s.vertices.assign(size, 1);
+  for (auto* three : {&s.radiance, &s.variance, &s.reflectance, &s.normal, &s.position}) {
+    three->assign(3 * size, 0);
+  }
+  for (std::size_t k = 0; k < size; ++k) {
+    const double x = static_cast<double>(k % width), y = static_cast<double>(k / width);
+    const bool right = x > 0.6 * static_cast<double>(width);
+    if (k % 37 == 5) s.paths[k] = 0;
+    if (k % 23 == 3) s.vertices[k] = k % 2 == 0 ? 0.0f : 0.5f;
+    s.normal[right ? k : 2 * size + k] = 1;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t at = c * size + k;
+      const double noise = 0.05 * normal(random);
+      s.reflectance[at] = static_cast<float>((right ? 0.2 : 0.7) + 0.02 * normal(random));
+      s.variance[at] = static_cast<float>(scale * scale * 0.0025 * std::exp(0.5 * normal(random)));
+      s.radiance[at] = static_cast<float>(
+          scale * ((right ? 1.5 : 0.4) + 0.01 * y + 0.1 * static_cast<double>(c) + noise));
+    }
+    s.position[k] = static_cast<float>(0.1 * x + (right ? 500 : 0));
+    s.position[size + k] = static_cast<float>(0.13 * y);
+    s.position[2 * size + k] = static_cast<float>(right ? 0.03 * y : 7);
+  }
+  return s;
+}
+
+// [second], as it is written, for one pixel: the weighted mean and the constant of the fit of the
+// light, and of `extra`.
+class Naive {
+ public:
+  Naive(const PixelStatistics& s, const std::vector<float>& extra) : s_(s), extra_(extra) {
+    long double sum = 0, paths = 0, logs = 0, count = 0;
+    for (std::size_t k = 0; k < s.paths.size(); ++k) {
+      if (s.paths[k] == 0) continue;
+      sum += luminance(k);
+      paths += static_cast<long double>(s.paths[k]);
+      ++count;
+    }
+    for (std::size_t k = 0; k < s.paths.size(); ++k) {
+      if (s.paths[k] > 0) logs += std::log(std::max(luminance(k), sum / count / 1000));
+    }
+    const long double usual = std::exp(logs / count);
+    noise_ = 0.016L * usual * usual / std::sqrt(paths / count);
+  }
+
+  // {mean, fit} of radiance 0, 1, 2, and of `extra`.
+  [[nodiscard]] std::vector<std::pair<long double, long double>> at(int x, int y) const {
+    constexpr std::size_t kOrder = 11;
+    std::vector<std::vector<long double>> a(kOrder, std::vector<long double>(kOrder + 4));
+    const std::size_t i = pixel(x, y);
+    for (int dy = -6; dy <= 6; ++dy) {
+      for (int dx = -6; dx <= 6; ++dx) {
+        if (!inside(x + dx, y + dy) || s_.paths[pixel(x + dx, y + dy)] == 0) continue;
+        const std::size_t j = pixel(x + dx, y + dy);
+        const long double e = unlikeness(x, y, dx, dy);
+        const long double w = std::pow(std::max(0.0L, 1 - std::max(0.0L, e) / 4), 4);
+        const std::vector<long double> f = features(i, j);
+        for (std::size_t r = 0; r < kOrder; ++r) {
+          for (std::size_t c = 0; c < kOrder; ++c) a[r][c] += w * f[r] * f[c];
+          for (std::size_t c = 0; c < 3; ++c) a[r][kOrder + c] += w * f[r] * radiance(c, j);
+          a[r][kOrder + 3] += w * f[r] * static_cast<long double>(extra_[j]);
+        }
+      }
+    }
+    std::vector<std::pair<long double, long double>> results(4);
+    for (std::size_t c = 0; c < 4; ++c) results[c].first = a[0][kOrder + c] / a[0][0];
+    for (std::size_t r = 1; r < kOrder; ++r) a[r][r] += 1e-3L * a[0][0];
+    solve(a, kOrder);
+    for (std::size_t c = 0; c < 4; ++c) results[c].second = a[0][kOrder + c] / a[0][0];
+    return results;
+  }
+
+ private:
+  // Gauss and Jordan, with pivots from the diagonal, which is positive definite.
+  static void solve(std::vector<std::vector<long double>>& a, std::size_t order) {
+    for (std::size_t p = 0; p < order; ++p) {
+      for (std::size_t r = 0; r < order; ++r) {
+        if (r == p) continue;
+        const long double factor = a[r][p] / a[p][p];
+        for (std::size_t c = 0; c < a[r].size(); ++c) a[r][c] -= factor * a[p][c];
+      }
+    }
+  }
+  [[nodiscard]] bool inside(int x, int y) const {
+    return x >= 0 && y >= 0 && x < static_cast<int>(s_.width) && y < static_cast<int>(s_.height);
+  }
+  // Of the pixel, or of that of the picture's rim nearest to it.
+  [[nodiscard]] std::size_t pixel(int x, int y) const {
+    const int right = static_cast<int>(s_.width) - 1, bottom = static_cast<int>(s_.height) - 1;
+    return static_cast<std::size_t>(std::clamp(y, 0, bottom)) * s_.width +
+           static_cast<std::size_t>(std::clamp(x, 0, right));
+  }
+  [[nodiscard]] long double radiance(std::size_t c, std::size_t k) const {
+    return s_.radiance[c * s_.paths.size() + k];
+  }
+  [[nodiscard]] long double luminance(std::size_t k) const {
+    return 0.2126L * radiance(0, k) + 0.7152L * radiance(1, k) + 0.0722L * radiance(2, k);
+  }
+  [[nodiscard]] long double unlikeness(int x, int y, int dx, int dy) const {
+    long double sum = 0;
+    for (int py = -1; py <= 1; ++py) {
+      for (int px = -1; px <= 1; ++px) {
+        const std::size_t a = pixel(x + px, y + py), b = pixel(x + dx + px, y + dy + py);
+        for (std::size_t c = 0; c < 3; ++c) {
+          const bool first = s_.paths[a] > 0, second = s_.paths[b] > 0;
+          const std::size_t at = c * s_.paths.size();
+          const long double d = (first ? radiance(c, a) : 0) - (second ? radiance(c, b) : 0);
+          const long double v = (first ? static_cast<long double>(s_.variance[at + a]) : 0) +
+                                (second ? static_cast<long double>(s_.variance[at + b]) : 0);
+          sum += (d * d - v) / (noise_ + 0.64L * v) / 27;
+        }
+      }
+    }
+    return sum;
+  }
+  [[nodiscard]] long double distance(std::size_t a, std::size_t b) const {
+    long double sum = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t at = c * s_.paths.size();
+      const long double d = static_cast<long double>(s_.position[at + a]) -
+                            static_cast<long double>(s_.position[at + b]);
+      sum += d * d;
+    }
+    return std::sqrt(sum);
+  }
+  [[nodiscard]] std::vector<long double> features(std::size_t i, std::size_t j) const {
+    const std::size_t size = s_.paths.size();
+    std::vector<long double> f = {1};
+    for (const auto* of : {&s_.reflectance, &s_.normal}) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        f.push_back(static_cast<long double>((*of)[c * size + j]) -
+                    static_cast<long double>((*of)[c * size + i]));
+      }
+    }
+    f.push_back(static_cast<long double>(s_.vertices[j]) -
+                static_cast<long double>(s_.vertices[i]));
+    long double nearest = 0;
+    const int x = static_cast<int>(i % s_.width), y = static_cast<int>(i / s_.width);
+    for (const auto& [dx, dy] : {std::pair(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
+      if (!inside(x + dx, y + dy) || s_.vertices[pixel(x + dx, y + dy)] == 0) continue;
+      const long double d = distance(i, pixel(x + dx, y + dy));
+      if (d > 0 && (nearest == 0 || d < nearest)) nearest = d;
+    }
+    const bool both = s_.vertices[i] > 0 && s_.vertices[j] > 0 && nearest > 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const long double d = static_cast<long double>(s_.position[c * size + j]) -
+                            static_cast<long double>(s_.position[c * size + i]);
+      f.push_back(both ? std::clamp(d / (64 * nearest), -4.0L, 4.0L) : 0);
+    }
+    return f;
+  }
+
+  const PixelStatistics& s_;
+  const std::vector<float>& extra_;
+  long double noise_ = 0;
+};
+
+// The three colours of `s` after the second pass, and `extra` as a part of its first colour.
+std::vector<float> passed(const PixelStatistics& s, std::vector<float>* extra = nullptr) {
+  std::vector<float> values = s.radiance;
+  const std::size_t size = s.paths.size();
+  std::vector<PixelPlane> planes;
+  for (std::size_t c = 0; c < 3; ++c) {
+    planes.push_back({std::span(values).subspan(c * size, size), c});
+  }
+  if (extra != nullptr) planes.push_back({*extra, 0});
+  filter::second_pass(s, planes);
+  return values;
+}
+
+TEST_CASE("The second pass is what naive loops give") {
+  for (const auto& [width, height] : {std::pair(43, 37), {1, 1}, {5, 40}, {61, 2}, {30, 16}}) {
+    INFO(width << " x " << height);
+    const PixelStatistics s =
+        picture(static_cast<std::size_t>(width), static_cast<std::size_t>(height), 1);
+    const std::size_t size = s.paths.size();
+    std::vector<float> extra(size);
+    for (std::size_t k = 0; k < size; ++k) extra[k] = 0.25f * s.radiance[k];
+    const std::vector<float> before = extra;
+    const std::vector<float> values = passed(s, &extra);
+    const Naive naive(s, before);
+    double worst = 0, changed = 0;
+    for (std::size_t k = 0; k < size; ++k) {
+      if (s.paths[k] == 0) {
+        CHECK(values[k] == s.radiance[k]);
+        continue;
+      }
+      const auto expected = naive.at(static_cast<int>(k % s.width), static_cast<int>(k / s.width));
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float value = values[c * size + k];
+        worst = std::max(worst, std::abs(static_cast<double>(expected[c].second) - double{value}));
+        changed = std::max(changed, std::abs(double{value} - double{s.radiance[c * size + k]}));
+      }
+      worst = std::max(worst, std::abs(static_cast<double>(expected[3].second) - double{extra[k]}));
+    }
+    CHECK(worst < 2e-4);
+    if (size > 100) CHECK(changed > 0.03);
+  }
+}
+
+TEST_CASE("The second pass takes noise away, and keeps edges and gradients") {
+  const PixelStatistics s = picture(60, 60, 2);
+  const std::vector<float> values = passed(s);
+  double before = 0, after = 0;
+  for (std::size_t k = 0; k < s.paths.size(); ++k) {
+    if (s.paths[k] == 0) continue;
+    const bool right = static_cast<double>(k % 60) > 36;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double truth =
+          (right ? 1.5 : 0.4) + 0.01 * static_cast<double>(k / 60) + 0.1 * static_cast<double>(c);
+      before += std::pow(double{s.radiance[c * 3600 + k]} - truth, 2);
+      after += std::pow(double{values[c * 3600 + k]} - truth, 2);
+    }
+  }
+  CHECK(after < 0.2 * before);
+}
+
+TEST_CASE("What has no noise stays as it is") {
+  PixelStatistics s = picture(40, 40, 3);
+  std::fill(s.variance.begin(), s.variance.end(), 0.0f);
+  s.paths.assign(s.paths.size(), std::uint64_t{1} << 40);  // a picture of 1e12 passes
+  const std::vector<float> values = passed(s);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    CHECK(std::abs(values[k] - s.radiance[k]) < 2e-3f);
+  }
+}
+
+TEST_CASE("The second pass of a picture a thousand times as bright is a thousand times as bright") {
+  const std::vector<float> one = passed(picture(40, 40, 4)),
+                           more = passed(picture(40, 40, 4, 1024));
+  for (std::size_t k = 0; k < one.size(); ++k)
+    CHECK(more[k] / 1024 == Approx(one[k]).epsilon(1e-5));
+}
+
+TEST_CASE("Parts of the light still add up after the second pass, and light is never below 0") {
+  PixelStatistics s = picture(40, 40, 5);
+  const std::size_t size = s.paths.size();
+  // Dark, and darker still toward one side, so that fits fall below 0.
+  std::mt19937 random(6);
+  std::exponential_distribution<float> bright(1);
+  for (std::size_t k = 0; k < 3 * size; ++k) {
+    s.radiance[k] = k % 40 < 3 ? 0.0f : 0.1f * bright(random) * static_cast<float>(k % 40);
+    s.variance[k] = s.radiance[k] * s.radiance[k] / 4;
+  }
+  std::vector<float> first(size), rest(size), whole(s.radiance.begin(), s.radiance.begin() + 1600);
+  for (std::size_t k = 0; k < size; ++k) {
+    first[k] = k % 3 == 0 ? s.radiance[k] : 0.25f * s.radiance[k];
+    rest[k] = s.radiance[k] - first[k];
+  }
+  const std::vector<PixelPlane> planes = {{whole, 0}, {first, 0}, {rest, 0}};
+  filter::second_pass(s, planes);
+  std::size_t held = 0;
+  for (std::size_t k = 0; k < size; ++k) {
+    CHECK(whole[k] >= 0);
+    CHECK(first[k] + rest[k] == Approx(whole[k]).margin(1e-5));
+    if (s.paths[k] > 0 && whole[k] == 0) ++held;
+  }
+  CHECK(held > 0);
+}
+
+TEST_CASE("Pixels that are not finite count nowhere and stay") {
+  PixelStatistics s = picture(40, 40, 7);
+  const std::vector<float> before = passed(s);
+  s.radiance[820] = kInfinity;
+  s.radiance[1600 + 420] = std::numeric_limits<float>::quiet_NaN();
+  s.variance[220] = kInfinity;
+  s.radiance[30] = 1e30f;
+  const std::vector<float> after = passed(s);
+  for (std::size_t k = 0; k < after.size(); ++k) {
+    const std::size_t pixel = k % 1600;
+    if (pixel == 820 || pixel == 420 || pixel == 220 || pixel == 30) {
+      CHECK((after[k] == s.radiance[k] || std::isnan(s.radiance[k])));
+    } else {
+      CHECK(std::abs(after[k] - before[k]) < 0.3f);
+    }
+  }
+}
+
+TEST_CASE("Places that are not finite or far away do no harm to the second pass") {
+  PixelStatistics s = picture(40, 40, 8);
+  for (const std::size_t k : {300u, 301u, 302u, 900u}) s.position[k] = 1e30f;
+  for (const float value : passed(s)) CHECK(std::isfinite(value));
+}
+
+TEST_CASE("A black picture, one without paths and no picture stay as they are") {
+  PixelStatistics black = picture(20, 20, 9);
+  std::fill(black.radiance.begin(), black.radiance.end(), 0.0f);
+  CHECK(passed(black) == black.radiance);
+  PixelStatistics none = picture(20, 20, 10);
+  std::fill(none.paths.begin(), none.paths.end(), std::uint64_t{0});
+  CHECK(passed(none) == none.radiance);
+  CHECK(passed(PixelStatistics()).empty());
+}
+
+TEST_CASE("The second pass gives the same bytes for any instruction set and number of threads") {
+  const PixelStatistics s = picture(75, 50, 11);
+  const std::vector<float> best = passed(s);
+  for (const std::string& set : filter::engine::instruction_sets()) {
+    const filter::engine::InstructionSetLimit limit(set);
+    INFO(set);
+    CHECK(passed(s) == best);
+  }
+  for (const std::size_t threads : {1u, 3u}) {
+    const core::ThreadLimit limit(threads);
+    CHECK(passed(s) == best);
+  }
+}
+
+}  // namespace
+}  // namespace psf
