@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 using namespace psf;
 using exports::Denoiser;
 using tests::DenoiserCase;
+using tests::RecordSet;
 using tests::Sample;
 using tests::Samples;
 using tests::TempFolder;
@@ -305,6 +306,30 @@ TEST_CASE("A range of passes is exported as a dump of these passes alone would b
     CHECK_THROWS_AS(write(Denoiser::nfor, folder / "in.pvb", folder / "x", none), Error);
   }
   CHECK(folder.file_count() == 2);
+}
+
+TEST_CASE("Every path of a dump of several blocks is counted once") {
+  const TempFolder folder;
+  DenoiserCase paths(1, 1);
+  constexpr std::size_t kPaths = 300'000;  // more than 2^18
+  paths.set = RecordSet(kPaths);
+  for (std::size_t i = 0; i < kPaths; ++i) paths.set.pixel[i] = static_cast<std::uint32_t>(i % 20);
+  paths.options.passes = {kPaths - 60'000, 60'000};
+  paths.options.chunk_capacity = 1 << 16;
+  paths.write(folder / "in.pvb");
+  std::uint64_t last = 0;
+  const auto result =
+      exports::export_for(Denoiser::bcd, run::Dump(folder / "in.pvb"), {}, folder / "out", "1.2.3",
+                          [&](std::uint64_t done, std::uint64_t total) {
+                            CHECK(total == kPaths);
+                            CHECK(done > last);
+                            last = done;
+                          });
+  CHECK(result.paths.paths == kPaths);
+  CHECK(last == kPaths);
+  const film::Image histogram = film::read_exr((folder / "out") + "/color_hist.exr");
+  const std::vector<float>& counts = *histogram.find("Bin_0060");
+  CHECK(std::count(counts.begin(), counts.end(), 15'000.0f) == 20);
 }
 
 TEST_CASE("What is written for a denoiser has the same bytes for any number of threads") {
