@@ -27,6 +27,7 @@
 #include "option_values.h"
 #include "pass_range.h"
 #include "verbs.h"
+#include "version.h"
 
 namespace psf::tools {
 namespace {
