@@ -51,7 +51,8 @@ void remove_unfinished() noexcept {
     const char* path = place.exchange(nullptr);
     if (path != nullptr && ::unlink(path) != 0) folders[count++] = path;
   }
-  for (std::size_t k = 0; k < count; ++k) static_cast<void>(::rmdir(folders[k]));
+  // The last first: a folder in another was made after it.
+  while (count > 0) static_cast<void>(::rmdir(folders[--count]));
 }
 
 }  // namespace psf::core

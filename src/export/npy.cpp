@@ -3,22 +3,16 @@
 
 #include <algorithm>
 #include <cctype>
-#include <deque>
-#include <filesystem>
 #include <set>
 #include <utility>
 
-#include "core/error.h"
 #include "core/interrupt.h"
-#include "core/temporary_name.h"
-#include "core/unfinished.h"
 #include "export/export.h"
 #include "export/file.h"
+#include "export/output_folder.h"
 
 namespace psf::exports {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::string header(std::string_view type, std::uint64_t count, std::size_t components) {
   const std::string shape =
@@ -67,60 +61,6 @@ std::string file_stem(std::string name, std::set<std::string>& taken) {
   return unique;
 }
 
-// Appears under its name with commit(), and is removed without.
-class OutputFolder {
- public:
-  explicit OutputFolder(const std::string& path) : path_(path) {
-    while (path_.size() > 1 && path_.back() == '/') path_.pop_back();
-    const fs::path target(path_);
-    const fs::path parent = target.has_parent_path() ? target.parent_path() : fs::path(".");
-    std::error_code error;
-    const fs::file_status status = fs::symlink_status(target, error);
-    if (fs::exists(status) && !fs::is_directory(status)) {
-      fail("is a file, and the arrays need a folder; choose another name");
-    }
-    if (fs::exists(status) && !fs::is_empty(target, error)) {
-      fail("is a folder with something in it; remove it or choose another name");
-    }
-    if (!fs::is_directory(parent)) {
-      fail(fmt::format("the folder {} does not exist, create it first", parent.string()));
-    }
-    temporary_ = core::temporary_name(path_);
-    unfinished_.emplace_back(temporary_.string());
-    fs::create_directory(temporary_, error);
-    if (error) fail("cannot create: " + error.message());
-  }
-  ~OutputFolder() {
-    std::error_code ignored;
-    if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
-  }
-  OutputFolder(const OutputFolder&) = delete;
-  OutputFolder& operator=(const OutputFolder&) = delete;
-
-  [[nodiscard]] std::string temporary(const std::string& name) {
-    std::string path = (temporary_ / name).string();
-    unfinished_.emplace_back(path);
-    return path;
-  }
-  [[nodiscard]] std::string shown(const std::string& name) const { return path_ + "/" + name; }
-  void commit() {
-    std::error_code error;
-    fs::rename(temporary_, path_, error);
-    if (error) fail("cannot put the finished folder in place: " + error.message());
-    temporary_.clear();
-    for (core::Unfinished& part : unfinished_) part.keep();
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& why) const {
-    throw Error(ErrorCode::io, path_ + ": " + why);
-  }
-
-  std::string path_;
-  fs::path temporary_;
-  std::deque<core::Unfinished> unfinished_;  // the folder and what is in it
-};
-
 }  // namespace
 
 ExportResult export_npy(const formats::Reader& reader, const ExportSelection& selection,
@@ -130,7 +70,7 @@ ExportResult export_npy(const formats::Reader& reader, const ExportSelection& se
   ExportResult outcome;
   outcome.records = outcome.written = records.size();
   outcome.passes = records.passes();
-  OutputFolder output(folder);
+  OutputFolder output(folder, "the arrays");
   const std::uint64_t steps = (channels.size() + 1) * records.size();
   std::uint64_t step = 0;
   // read(k, count) gives the bytes of selected records [k, k + count).

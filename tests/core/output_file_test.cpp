@@ -1,6 +1,7 @@
 // An output appears under its name only when whole.
 #include "core/output_file.h"
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -58,4 +59,14 @@ TEST_CASE("a missing folder, a folder as file name and an empty name are told at
 
 TEST_CASE("a full disk is an error, not a short file") {
   CHECK_THROWS_AS(psf::core::write_text_file("/dev/full", "text"), psf::Error);
+}
+
+TEST_CASE("unfinished folders go with what is in them, inner ones too") {
+  const TempFolder folder;
+  const std::string outer = folder / "outer", inner = outer + "/inner", file = inner + "/file";
+  const psf::core::Unfinished a(outer), b(inner), c(file);
+  std::filesystem::create_directories(inner);
+  std::ofstream(file) << "half";
+  psf::core::remove_unfinished();
+  CHECK(folder.file_count() == 0);
 }

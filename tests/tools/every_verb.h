@@ -86,6 +86,9 @@ inline const std::vector<std::string>& every_verb() {
       "psf export IN/a.pvb -o OUT/e.csv --json OUT/e.json",
       "psf export IN/a.pvb -o OUT/e.ply --json OUT/e.json",
       "psf export IN/a.pvb -o OUT/arrays --json OUT/e.json",
+      "psf export IN/a.pvb -o OUT/oidn --for oidn --json OUT/e.json --quiet",
+      "psf export IN/a.pvb -o OUT/nfor --for nfor --json OUT/e.json --quiet",
+      "psf export IN/a.pvb -o OUT/bcd --for bcd --json OUT/e.json --quiet",
       "psf compare IN/a.exr IN/a.exr --error OUT/d.exr --error OUT/d.png --json OUT/d.json",
       "psf flicker IN/s.####.exr IN/s.####.exr --reference IN/s.####.exr --sheet OUT/k.png --json "
       "OUT/k.json --quiet",

@@ -51,7 +51,10 @@ const std::map<std::string, const char*> kProse = {
      "passes. The output may replace one of the inputs."},
     {"psf-export",
      "The name of the output decides: a folder gets a numpy array for each channel, .ply is a "
-     "point cloud for MeshLab or CloudCompare, .csv a table."},
+     "point cloud for MeshLab or CloudCompare, .csv a table.\n"
+     "With --for the folder gets the pictures that another denoiser takes, made from the same "
+     "paths: "
+     "the colours are those of the picture without filter."},
     {"psf-compare",
      "The first five metrics are of linear values; SSIM and FLIP look at the picture as a .png "
      "shows it. Pixels that are not finite are left out and counted, and then no bound holds. "

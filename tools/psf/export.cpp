@@ -1,8 +1,9 @@
-// psf export: writes a dump in the formats of other programs.
+// psf export: writes a dump in the formats of other programs, and as pictures for denoisers.
 #include "export/export.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -20,21 +21,25 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/text.h"
+#include "export/denoisers.h"
 #include "formats/read/reader.h"
+#include "notes.h"
 #include "option_values.h"
 #include "pass_range.h"
 #include "verbs.h"
+#include "version.h"
 
 namespace psf::tools {
 namespace {
 
 struct ExportOptions {
   CommonOptions common;
-  std::string input, output, format, passes, table{formats::kPaths};
+  std::string input, output, format, passes, denoiser, table{formats::kPaths};
   std::vector<std::string> channels;
   std::uint64_t every = 1;
   // As written; empty: not given.
   std::string colour, exposure;
+  const CLI::App* command = nullptr;
 };
 
 [[noreturn]] void refuse(const std::string& why) {
@@ -107,7 +112,66 @@ void print(const ExportOptions& options, const std::string& format,
   fmt::print("\n");
 }
 
+// What of the other options has no meaning beside --for.
+void check_for_denoiser(const ExportOptions& options) {
+  for (const char* name :
+       {"--format", "--channels", "--table", "--every", "--colour", "--exposure"}) {
+    if (options.command->count(name) == 0) continue;
+    refuse(
+        fmt::format("{0} has no meaning beside --for {1}, which writes what {1} reads; leave "
+                    "out one of them",
+                    name, options.denoiser));
+  }
+}
+
+nlohmann::ordered_json to_json(const ExportOptions& options, const exports::DenoiserResult& outcome,
+                               double seconds) {
+  return {{"file", options.input},
+          {"for", options.denoiser},
+          {"paths", outcome.paths.paths},
+          {"passes", outcome.paths.passes},
+          {"non_finite", outcome.paths.left_out},
+          {"overflows", outcome.paths.overflows},
+          {"pixels_without_path", outcome.without_path},
+          {"pixels_with_one_path", outcome.with_one_path},
+          {"files", outcome.files},
+          {"bytes", outcome.bytes},
+          {"seconds", seconds}};
+}
+
+void run_for_denoiser(const ExportOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  check_for_denoiser(options);
+  const core::ThreadLimit threads(options.common.threads);
+  const auto& names = exports::kDenoiserNames;
+  const auto denoiser = static_cast<exports::Denoiser>(
+      std::find(names.begin(), names.end(), options.denoiser) - names.begin());
+  core::check_apart(std::vector{options.input}, std::vector{options.output, options.common.json});
+  check_files({options.input}, {options.common.json});
+
+  const run::Dump dump(options.input);
+  core::Progress bar("export", options.common.quiet);
+  const exports::DenoiserResult outcome = exports::export_for(
+      denoiser, dump, parse_passes(options.passes), options.output, kVersion,
+      [&bar](std::uint64_t done, std::uint64_t total) { bar.advance(done, total); });
+  bar.finish();
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  print_notes(outcome.notes, options.common.quiet);
+  fmt::print("{}: for {}: {} of {}, {:.1f} MB in {} files", options.output, options.denoiser,
+             core::counted(outcome.paths.paths, "path", "paths"),
+             core::counted(outcome.paths.passes, "pass", "passes"),
+             static_cast<double>(outcome.bytes) / 1e6, outcome.files.size());
+  const std::uint64_t left_out = outcome.paths.left_out + outcome.paths.overflows;
+  if (left_out > 0) fmt::print("; left out {} not finite", core::with_commas(left_out));
+  fmt::print("\n");
+  if (!options.common.json.empty()) {
+    core::write_json_file(options.common.json, to_json(options, outcome, seconds));
+  }
+}
+
 void run(const ExportOptions& options) {
+  if (!options.denoiser.empty()) return run_for_denoiser(options);
   const auto start = std::chrono::steady_clock::now();
   const core::ThreadLimit threads(options.common.threads);
   const std::string format = format_of(options);
@@ -143,12 +207,15 @@ void run(const ExportOptions& options) {
 void add_export(CLI::App& app) {
   auto shared = std::make_shared<ExportOptions>();
   ExportOptions& options = *shared;
-  CLI::App* command =
-      app.add_subcommand("export", "write a dump as numpy arrays, a point cloud or CSV");
+  CLI::App* command = app.add_subcommand(
+      "export", "write a dump as numpy arrays, a point cloud, CSV or pictures for denoisers");
+  options.command = command;
   command->add_option("IN", options.input, "path-vertex buffer")->required()->type_name("FILE.pvb");
   command
-      ->add_option("-o,--output", options.output,
-                   "a folder (an .npy for each channel), or a name that ends in .ply or .csv")
+      ->add_option(
+          "-o,--output", options.output,
+          "a folder (an .npy for each channel, or with --for the pictures), or a name that "
+          "ends in .ply or .csv")
       ->required()
       ->type_name("DIR|FILE.ply|.csv");
   command->add_option("--format", options.format, "the format, whatever the name")
@@ -159,6 +226,15 @@ void add_export(CLI::App& app) {
       ->allow_extra_args(false)
       ->delimiter(',')
       ->type_name("NAME,...");
+  command
+      ->add_option("--for", options.denoiser,
+                   "a folder of pictures that this denoiser takes, made from the same paths: oidn "
+                   "(Open Image Denoise: means of colour, albedo and normal), nfor (half buffers "
+                   "and variances of colour, albedo, normal and depth), bcd (histograms and "
+                   "covariances of colour)")
+      ->check(CLI::IsMember(
+          std::vector<std::string>(exports::kDenoiserNames.begin(), exports::kDenoiserNames.end())))
+      ->type_name("DENOISER");
   command
       ->add_option(
           "--table", options.table,
