@@ -227,7 +227,7 @@ class Overview {
     }
     const PixelSums& pixel = report_.whence.pixel;
     std::string text = fmt::format(
-        "{} of the {} averaged, of which a part is kept", core::with_commas(dimmed.size()),
+        "{} of the {} averaged, dimmed to what they keep", core::with_commas(dimmed.size()),
         core::counted(averaged.size() + dimmed.size(), "source", "sources"));
     if (spreads(e_)) {
       text = fmt::format("{}; {} {} {} of the filtered luminance", text,

@@ -49,13 +49,14 @@ inline double times_mean(const ExplainResult& explanation, const ExplainedPair& 
 // A firefly in a sentence.
 inline std::string firefly_text(const ExplainResult& explanation, const ExplainedFirefly& firefly) {
   std::string text =
-      fmt::format("path {} is one, {:.3g} times the {:.3g} ordinary around it; keeps {}",
+      fmt::format("path {} is one: {:.3g} times what is ordinary there; keeps {}",
                   explanation.record[firefly.vertex], double{firefly.luminance} / firefly.ordinary,
-                  firefly.ordinary, percent(double{firefly.kept}, 1.0));
+                  percent(double{firefly.kept}, 1.0));
   if (firefly.sources == 0) return text;
-  return text + fmt::format(", gives {} within {:.3g} the rest",
+  return text + fmt::format(", gives the rest to {} within {:.3g}",
                             core::counted(firefly.sources, "source", "sources"), firefly.reach);
 }
+
 // Whether a colour of the path's fit would be below 0 and is 0.
 inline bool is_held(const ExplainedFit& fit) {
   return fit.taken.x < 1 || fit.taken.y < 1 || fit.taken.z < 1;
