@@ -50,9 +50,9 @@ struct PixelShare {
   double plane = 0;                 // signed distance off the tangent plane of x_i, in radii
 };
 
-// The pairs that bring light, without those of a path with itself, by the set of terms that would tell the
-// two records apart. The thresholds are those of the run, or the filter's defaults, or kApart where
-// it has none (`plane`).
+// The pairs that bring light, without those of a path with itself, by the set of terms that would
+// tell the two records apart. The thresholds are those of the run, or the filter's defaults, or
+// kApart where it has none (`plane`).
 inline constexpr float kApart = 0.25f;
 struct KindShare {
   std::uint32_t terms = 0;  // bit k: term k, of those with TermInfo::apart
