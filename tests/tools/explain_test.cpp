@@ -179,8 +179,8 @@ TEST_CASE("The text tells of fits and fireflies where there are any, and nowhere
       work.explain("--pixel 16,16 --block all --fit linear --fireflies spread --all");
   const Outcome dimmed = work.explain("--pixel 16,16 --block all --fireflies clamp:1 --all");
   CHECK(both.code == 0);
-  for (const char* words : {"\nfit  ", "\nfireflies ", "if mean", "plane   weight", "keeps", "given",
-                            "gives here", "    ridge "}) {
+  for (const char* words : {"\nfit  ", "\nfireflies ", "if mean", "plane   weight", "keeps",
+                            "given", "gives here", "    ridge "}) {
     INFO(words);
     CHECK(both.out.find(words) != std::string::npos);
     CHECK(mean.find(words) == std::string::npos);
