@@ -163,11 +163,14 @@ class Tables {
           pair.distance, cell(v_.normal, 1, f.angle.value_or(0)),
           cell(v_.reflectance, 3, f.reflectance.value_or(0)), lights(pair, f), material(pair, f),
           cell(v_.normal, 2, f.plane.value_or(0)));
-      if (fits(e_)) say("{:>8.2f}x", times_mean(e_, pair));
+      if (fits(e_)) say("{:>9}", weight(pair));
       if (dims(e_)) say("{:>9}", kept(source.vertex));
       say("\n");
     }
     rest(w_.sources.size());
+  }
+  [[nodiscard]] std::string weight(const ExplainedPair& pair) const {
+    return pair.averaged ? fmt::format("{:.2f}x", times_mean(e_, pair)) : "-";
   }
   [[nodiscard]] std::string kept(std::uint32_t vertex) const {
     const ExplainedFirefly* firefly = firefly_at(e_, vertex);
