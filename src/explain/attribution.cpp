@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <string_view>
 
 #include "explain/remedies.h"
 #include "filter/channels.h"
 #include "filter/kinds.h"
-#include "filter/values.h"
-#include "search/ball.h"
 
 namespace psf::explain {
 namespace {
@@ -49,7 +46,13 @@ class Tracer {
       if (!is_counted(path)) continue;
       Colour radiance = pixel_if_.unfiltered(i), part(0, 0, 0);
       pixel.filtered += radiance;
-      if (!bare) pixel.filtered += wide(e_.vertices.throughput[i]) * wide(path.c_bar);
+      pixel.of_means += radiance;
+      if (!bare) {
+        const Colour throughput = wide(e_.vertices.throughput[i]);
+        pixel.filtered += throughput * wide(path.c_bar);
+        pixel.of_means += throughput * if_mean(path);
+        pixel.given += throughput * wide(path.given);
+      }
       if (!path.is_input) continue;
       if (!bare) {
         const Colour alpha_i = wide(e_.vertices.throughput[i]);
@@ -65,7 +68,9 @@ class Tracer {
       brightest = luminance(radiance);
       pixel.brightest = p;
     }
-    if (pixel.paths > 0) pixel.filtered /= static_cast<double>(pixel.paths);
+    for (Colour* sum : {&pixel.filtered, &pixel.of_means, &pixel.given}) {
+      if (pixel.paths > 0) *sum /= static_cast<double>(pixel.paths);
+    }
     if (pixel.own_paths == 0) return;
     const auto n = static_cast<double>(pixel.own_paths);
     pixel.own = own / n;
@@ -109,13 +114,17 @@ class Tracer {
         e_.pairs.begin(), e_.pairs.end(), [](const auto& pair) { return pair.in_ball; }));
   }
 
-  // The excess of one averaged pair. The excesses of all pairs sum to the difference.
+  // The excess of one pair that brings light; all that is given is excess. The excesses of all pairs
+  // sum to the difference.
   [[nodiscard]] Colour excess_of(const ExplainedPair& pair) const {
     const ExplainedPath& path = e_.paths[pair.path];
     const auto n = static_cast<double>(result_.pixel.paths);
-    const Colour alpha = wide(e_.vertices.throughput[path.vertex]);
-    return share_of(e_, pair, result_.pixel.paths) -
-           alpha * result_.pixel.baseline / (n * averaged_[pair.path]);
+    const Colour own = wide(e_.vertices.throughput[path.vertex]) * result_.pixel.baseline;
+    Colour excess = share_of(e_, pair, result_.pixel.paths);
+    if (!pair.averaged) return excess;
+    excess -= own / (n * averaged_[pair.path]);
+    if (path.fit) excess -= own * path.fit->taken * double{pair.beside} / n;
+    return excess;
   }
 
   void rank_sources() {
@@ -125,7 +134,7 @@ class Tracer {
     std::vector<double> most(e_.record.size(), 0);
     for (std::size_t p = 0; p < e_.pairs.size(); ++p) {
       const ExplainedPair& pair = e_.pairs[p];
-      if (!pair.averaged || !is_counted(e_.paths[pair.path])) continue;
+      if (!brings_light(pair) || !is_counted(e_.paths[pair.path])) continue;
       SourceShare& source = of_vertex[pair.vertex];
       const Colour excess = excess_of(pair);
       const double weight = std::abs(luminance(excess));
@@ -136,6 +145,7 @@ class Tracer {
       source.vertex = pair.vertex;
       ++source.paths;
       source.share += share_of(e_, pair, result_.pixel.paths);
+      source.given += given_of(e_, pair, result_.pixel.paths);
       source.excess += excess;
       result_.pixel.difference += excess;
     }
@@ -192,7 +202,7 @@ class Tracer {
     std::vector<bool> met(e_.record.size(), false);
     for (const ExplainedPair& pair : e_.pairs) {
       const ExplainedPath& path = e_.paths[pair.path];
-      if (!pair.averaged || !is_counted(path)) continue;
+      if (!brings_light(pair) || !is_counted(path)) continue;
       const std::uint32_t j = pair.vertex;
       const Colour excess = excess_of(pair);
       const std::uint16_t camera = e_.vertices.camera.empty() ? 0 : e_.vertices.camera[j];
@@ -254,47 +264,6 @@ double luminance(const Colour& colour) {
 
 Attribution attribute(const ExplainResult& explanation) {
   return Tracer(explanation).run();
-}
-
-Colour share_of(const ExplainResult& explanation, const ExplainedPair& pair, std::uint64_t paths) {
-  const ExplainedPath& path = explanation.paths[pair.path];
-  Rgb value = explanation.value[pair.vertex];
-  if (explanation.request.parameters.demodulate) {
-    value = filter::remodulate(value, explanation.vertices.reflectance[path.vertex]);
-  }
-  return wide(explanation.vertices.throughput[path.vertex]) * wide(value) * double{pair.area} *
-         path.scale / static_cast<double>(paths);
-}
-
-PairFeatures features_of(const ExplainResult& explanation, const ExplainedPair& pair) {
-  const run::BlockRecords& v = explanation.vertices;
-  const ExplainedPath& path = explanation.paths[pair.path];
-  const std::uint32_t i = path.vertex, j = pair.vertex;
-  const auto degrees = [](const Vec3& a, const Vec3& b) {
-    return std::acos(std::clamp(double{dot(a, b)}, -1.0, 1.0)) * 180 / std::numbers::pi;
-  };
-  PairFeatures features;
-  if (!v.normal.empty() && !in_volume(v, i) && !in_volume(v, j)) {
-    features.angle = degrees(v.normal[i], v.normal[j]);
-    const Vec3 to_j(v.position[j].x - v.position[i].x, v.position[j].y - v.position[i].y,
-                    v.position[j].z - v.position[i].z);
-    features.plane = path.radius > 0 ? double{dot(to_j, v.normal[i])} / double{path.radius} : 0;
-  }
-  if (!v.reflectance.empty()) {
-    features.reflectance =
-        std::sqrt(double{search::distance_sq(v.reflectance[i], v.reflectance[j])});
-  }
-  if (!v.visibility.empty()) features.lights = v.visibility[i] ^ v.visibility[j];
-  if (!v.hit_distance.empty()) {
-    const auto h_i = double{v.hit_distance[i]}, h_j = double{v.hit_distance[j]};
-    const double longer = std::max(h_i, h_j);
-    features.hit_distance = h_i == h_j           ? 0
-                            : std::isinf(longer) ? longer
-                                                 : std::abs(h_i - h_j) / longer;
-  }
-  if (!v.direction.empty()) features.direction = degrees(v.direction[i], v.direction[j]);
-  if (!v.material.empty()) features.material = v.material[i] != v.material[j];
-  return features;
 }
 
 }  // namespace psf::explain

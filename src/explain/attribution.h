@@ -7,15 +7,10 @@
 #include <vector>
 
 #include "core/vec.h"
-#include "explain/explain.h"
+#include "explain/pairs.h"
 
 namespace psf::explain {
 
-using Colour = Imath::V3d;  // linear, Rec. 709 primaries
-
-[[nodiscard]] inline Colour wide(const Vec3& v) {
-  return {double{v.x}, double{v.y}, double{v.z}};
-}
 [[nodiscard]] double luminance(const Colour& colour);
 
 // Sums over the N paths that are part of the pixel.
@@ -30,13 +25,16 @@ struct PixelSums {
   Colour baseline{0, 0, 0};    // o = sum alpha_i c_i / sum alpha_i over its own sources
   // sum alpha_i (c_bar_i - o) / N; it is filtered - own where every path has a contribution.
   Colour difference{0, 0, 0};
+  Colour of_means{0, 0, 0};  // the pixel with means in place of [fit]
+  Colour given{0, 0, 0};     // the part of `filtered` that fireflies have given
 };
 
-// A source j, summed over all paths that average it.
+// A source j, summed over all paths that it brings light to.
 struct SourceShare {
   std::uint32_t vertex = 0, paths = 0;
   std::size_t pair = 0;    // the pair with most excess
-  Colour share{0, 0, 0};   // what it adds to the pixel: sum alpha_i c_j / (count_i N)
+  Colour share{0, 0, 0};   // what it adds to the pixel: sum alpha_i c_j / (count_i N), of a mean
+  Colour given{0, 0, 0};   // the part of this that it gives as a firefly
   Colour excess{0, 0, 0};  // what it adds beyond o in its place; the excesses sum to the difference
 };
 
@@ -52,9 +50,9 @@ struct PixelShare {
   double plane = 0;                 // signed distance off the tangent plane of x_i, in radii
 };
 
-// The averaged pairs, without those of a path with itself, by the set of terms that would tell the
-// two records apart. The thresholds are those of the run, or the filter's defaults, or kApart where
-// it has none (`plane`).
+// The pairs that bring light, without those of a path with itself, by the set of terms that would
+// tell the two records apart. The thresholds are those of the run, or the filter's defaults, or
+// kApart where it has none (`plane`).
 inline constexpr float kApart = 0.25f;
 struct KindShare {
   std::uint32_t terms = 0;  // bit k: term k, of those with TermInfo::apart
@@ -62,7 +60,8 @@ struct KindShare {
   Colour excess{0, 0, 0};
 };
 
-// TermRefusals and Remedy leave the radii as they are, also where `adaptive` would choose others.
+// TermRefusals and Remedy leave the radii as they are, also where `adaptive` would choose others; and
+// who is a firefly, what it keeps, and what it gives to those to whom it still gives.
 
 // For a term that is on: the number of pairs in the balls that it refuses, the number that it alone
 // refuses, and the pixel without the term.
@@ -77,7 +76,7 @@ struct TermRefusals {
 struct Remedy {
   std::size_t term = 0;
   std::optional<float> threshold;
-  std::uint64_t leaking = 0, others = 0;  // averaged pairs that it would also refuse
+  std::uint64_t leaking = 0, others = 0;  // pairs that bring light that it would refuse
   Colour pixel{0, 0, 0};                  // value of the pixel with this term
   [[nodiscard]] double gain(std::uint64_t all_leaking, std::uint64_t all_others) const;
 };
@@ -86,11 +85,12 @@ struct Attribution {
   PixelSums pixel;
   std::uint64_t candidates = 0;  // pairs in the balls
   std::vector<TermRefusals> refusals;
-  // The averaged sources. Those that push the pixel in the direction of the difference come first.
+  // The sources that bring light. Those that push the pixel in the direction of the difference come
+  // first.
   std::vector<SourceShare> sources;
   // `leak` is the least number of sources, from the first on, whose excesses make up the
-  // difference. The others are the numbers of averaged pairs with these sources and with all
-  // others, without the pairs of paths with themselves.
+  // difference. The others are the numbers of pairs that bring light, with these sources and with
+  // all others, without the pairs of paths with themselves.
   std::size_t leak = 0;
   std::uint64_t leak_pairs = 0, other_pairs = 0;
   std::vector<PixelShare> pixels;  // in the same order as `sources`
@@ -99,22 +99,5 @@ struct Attribution {
 };
 
 [[nodiscard]] Attribution attribute(const ExplainResult& explanation);
-
-// What a pair adds to a pixel of `paths` paths.
-[[nodiscard]] Colour share_of(const ExplainResult& explanation, const ExplainedPair& pair,
-                              std::uint64_t paths);
-
-// The differences between a source and the vertex that averages it; not set where the file lacks
-// the channel.
-struct PairFeatures {
-  std::optional<double> angle;          // between the normals, degrees
-  std::optional<double> reflectance;    // norm of the difference
-  std::optional<std::uint32_t> lights;  // visibility bits that differ
-  std::optional<double> hit_distance;   // relative difference; infinity: one is a miss
-  std::optional<double> plane;          // distance off the plane in radii; > 0 on the normal's side
-  std::optional<double> direction;      // angle between the directions, degrees
-  std::optional<bool> material;         // whether the materials differ
-};
-[[nodiscard]] PairFeatures features_of(const ExplainResult& explanation, const ExplainedPair& pair);
 
 }  // namespace psf::explain

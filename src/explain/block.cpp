@@ -6,23 +6,42 @@
 #include <utility>
 
 #include "core/error.h"
+#include "explain/pairs.h"
+#include "explain/path_fit.h"
 #include "filter/estimators/disk.h"
 #include "filter/inputs.h"
 #include "filter/radius.h"
 #include "search/ball.h"
 
 namespace psf::explain {
+namespace {
+
+void take_room(std::size_t pairs, std::atomic<std::int64_t>& room) {
+  if ((room -= static_cast<std::int64_t>(pairs)) >= 0) return;
+  throw Error(ErrorCode::limit,
+              "the balls around this pixel's vertices hold too many sources to list; choose a "
+              "smaller `r0` or `block`, fewer `passes`, or one `path`");
+}
+
+}  // namespace
 
 BlockExplainer::BlockExplainer(const filter::Records& records, const filter::Block& block,
                                const filter::Parameters& parameters)
     : parameters_(parameters) {
   std::vector<float> given;
   filter::radii(parameters.radius, records, block, given);
-  estimates_ = filter::estimate(records, given, block, parameters);
+  estimates_ = filter::estimate(records, given, block, parameters, &fireflies_);
+  for (const filter::Fireflies& some : fireflies_) {
+    for (std::size_t g = 0; g < some.records().size(); ++g) every_firefly_.push_back(some[g]);
+  }
+  std::sort(every_firefly_.begin(), every_firefly_.end(),
+            [](const auto& a, const auto& b) { return a.record < b.record; });
   if (parameters.iterations > 1) {
     filter::Parameters fewer = parameters;
     --fewer.iterations;
-    before_ = filter::estimate(records, given, block, fewer).c_bar;
+    filter::Estimates before = filter::estimate(records, given, block, fewer);
+    for (std::size_t i = 0; i < before.given.size(); ++i) before.c_bar[i] -= before.given[i];
+    before_ = std::move(before.c_bar);
   }
   radius_in_world_ = estimates_.radius.empty() ? given : estimates_.radius;
   scaled_.emplace(records, radius_in_world_);
@@ -62,16 +81,31 @@ ExplainedPath BlockExplainer::explain(std::uint32_t i, std::vector<ExplainedPair
   find_pairs(i, pairs, room);
   path.in_ball = static_cast<std::uint32_t>(pairs.size());
   if (path.neighbors == 0) adopt(i, pairs);
+  if (!estimates_.given.empty()) path.given = estimates_.given[i];
+  find_givers(i, pairs, room);
   std::sort(pairs.begin(), pairs.end(),
             [](const auto& a, const auto& b) { return a.vertex < b.vertex; });
   path.scale = scale_of(i, pairs);
+  fit(path, pairs);
   return path;
 }
 
 Rgb BlockExplainer::value(std::uint32_t j) const {
   const Rgb& c = parameters_.iterations > 1 ? before_[j] : records_.contribution[j];
   const bool demodulated = parameters_.demodulate && is_source(j);
-  return demodulated ? filter::demodulate(c, records_.reflectance[j]) : c;
+  const Rgb value = demodulated ? filter::demodulate(c, records_.reflectance[j]) : c;
+  const auto of = parameters_.iterations == 1 ? firefly(j) : std::nullopt;
+  return of ? value * of->kept : value;
+}
+
+std::optional<ExplainedFirefly> BlockExplainer::firefly(std::uint32_t j) const {
+  const auto at = std::lower_bound(
+      every_firefly_.begin(), every_firefly_.end(), j,
+      [](const filter::Firefly& firefly, std::uint32_t record) { return firefly.record < record; });
+  if (at == every_firefly_.end() || at->record != j) return std::nullopt;
+  const auto sources =
+      at->per_source > 0 ? static_cast<std::uint64_t>(std::llround(1 / at->per_source)) : 0;
+  return ExplainedFirefly{j, at->luminance, at->ordinary, at->kept, at->reach, sources};
 }
 
 // Without area a ball holds its own value; in volumes a disk is none.
@@ -104,11 +138,7 @@ void BlockExplainer::find_pairs(std::uint32_t i, std::vector<ExplainedPair>& pai
       d_sq.push_back(neighbor.d_sq);
     }
   }
-  if ((room -= static_cast<std::int64_t>(sources.size()) + 1) < 0) {
-    throw Error(ErrorCode::limit,
-                "the balls around this pixel's vertices hold too many sources to list; choose a "
-                "smaller `r0` or `block`, fewer `passes`, or one `path`");
-  }
+  take_room(sources.size() + 1, room);
   const auto add = [&](std::uint32_t j, float squared) {
     ExplainedPair pair;
     pair.vertex = j;
@@ -131,18 +161,51 @@ void BlockExplainer::adopt(std::uint32_t i, std::vector<ExplainedPair>& pairs) c
   const Kin& kin = kin_[records_.in_volume(i) ? 1 : 0];
   const filter::Problem problem{records_, kin.roles, radius_, weights_->like(i), {}};
   for (const std::uint32_t j : filter::adopt(*kin.search, problem, i).sources) {
-    auto pair = std::find_if(pairs.begin(), pairs.end(),
-                             [j](const ExplainedPair& of) { return of.vertex == j; });
-    if (pair == pairs.end()) {
-      pairs.emplace_back();
-      pair = pairs.end() - 1;
-      pair->vertex = j;
-      pair->distance = scaled_->to_world(
-          std::sqrt(search::distance_sq(records_.position[i], records_.position[j])));
-      pair->refusers = weights_->refusers(i, j, radius_[i]);
-    }
-    pair->averaged = true;
-    pair->area = 1;
+    ExplainedPair& pair = pair_with(i, j, pairs);
+    pair.averaged = true;
+    pair.area = 1;
+  }
+}
+
+ExplainedPair& BlockExplainer::pair_with(std::uint32_t i, std::uint32_t j,
+                                         std::vector<ExplainedPair>& pairs) const {
+  const auto known = std::find_if(pairs.begin(), pairs.end(),
+                                  [j](const ExplainedPair& of) { return of.vertex == j; });
+  if (known != pairs.end()) return *known;
+  ExplainedPair& pair = pairs.emplace_back();
+  pair.vertex = j;
+  pair.distance =
+      scaled_->to_world(std::sqrt(search::distance_sq(records_.position[i], records_.position[j])));
+  pair.refusers = weights_->refusers(i, j, radius_[i]);
+  return pair;
+}
+
+// Marks or adds the fireflies that give to path i.
+void BlockExplainer::find_givers(std::uint32_t i, std::vector<ExplainedPair>& pairs,
+                                 std::atomic<std::int64_t>& room) const {
+  const std::size_t before = pairs.size();
+  for (const filter::Fireflies& some : fireflies_) {
+    some.each_giver(i, [&](std::uint32_t j, double share) {
+      pair_with(i, j, pairs).given = static_cast<float>(share);
+    });
+  }
+  take_room(pairs.size() - before, room);
+}
+
+void BlockExplainer::fit(ExplainedPath& path, std::span<ExplainedPair> pairs) const {
+  if (parameters_.fit != filter::BallFit::linear || path.neighbors < 2) return;
+  const std::uint32_t i = path.vertex;
+  std::vector<FitSource> sources;
+  for (const ExplainedPair& pair : pairs) {
+    if (pair.averaged) sources.push_back({pair.vertex, value(pair.vertex)});
+  }
+  const std::optional<PathFit> fit = fit_path(records_, i, radius_[i], sources);
+  if (!fit) return;
+  path.fit = fit->of;
+  if (parameters_.demodulate) path.fit->mean = remodulated(path.fit->mean, records_.reflectance[i]);
+  auto beside = fit->beside.begin();
+  for (ExplainedPair& pair : pairs) {
+    if (pair.averaged) pair.beside = *beside++;
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "explain/explain.h"
 #include "filter/estimate.h"
+#include "filter/fireflies.h"
 #include "filter/kinds.h"
 #include "filter/orphans.h"
 #include "filter/roles.h"
@@ -37,6 +38,8 @@ class BlockExplainer {
   }
   // The value of source j that is averaged.
   [[nodiscard]] Rgb value(std::uint32_t j) const;
+  // Record j as a firefly, if it is one.
+  [[nodiscard]] std::optional<ExplainedFirefly> firefly(std::uint32_t j) const;
 
  private:
   // Vertices that are averaged together: of surfaces and curves, or in volumes.
@@ -52,11 +55,19 @@ class BlockExplainer {
   void find_pairs(std::uint32_t i, std::vector<ExplainedPair>& pairs,
                   std::atomic<std::int64_t>& room) const;
   void adopt(std::uint32_t i, std::vector<ExplainedPair>& pairs) const;
+  void find_givers(std::uint32_t i, std::vector<ExplainedPair>& pairs,
+                   std::atomic<std::int64_t>& room) const;
+  void fit(ExplainedPath& path, std::span<ExplainedPair> pairs) const;
+  // The pair of path i with source j, which is added where it is missing.
+  ExplainedPair& pair_with(std::uint32_t i, std::uint32_t j,
+                           std::vector<ExplainedPair>& pairs) const;
 
   const filter::Parameters& parameters_;
   filter::Estimates estimates_;
-  std::vector<Rgb> before_;             // c_bar of the iteration before the last
-  std::vector<float> radius_in_world_;  // r_i, as chosen, world units
+  std::vector<Rgb> before_;  // c_bar of the iteration before the last, without gifts
+  std::vector<filter::Fireflies> fireflies_;    // of surfaces and volumes, where there are any
+  std::vector<filter::Firefly> every_firefly_;  // of both, by record
+  std::vector<float> radius_in_world_;          // r_i, as chosen, world units
   std::optional<filter::Scaled> scaled_;
   filter::Records records_;        // in the unit of scaled_
   std::span<const float> radius_;  // in the unit of scaled_

@@ -164,6 +164,10 @@ class Explainer {
       result_.pass.push_back(static_cast<std::uint32_t>(next - bounds.begin() - 1));
       result_.is_source.push_back(explainer.is_source(i));
       result_.value.push_back(explainer.value(i));
+      if (auto firefly = explainer.firefly(i)) {
+        firefly->vertex = static_cast<std::uint32_t>(result_.record.size() - 1);
+        result_.fireflies.push_back(*firefly);
+      }
     }
   }
 
@@ -187,14 +191,6 @@ void check(const run::Dump& dump, const ExplainRequest& request) {
     }
     refuse(fmt::format("`estimator`: only those that average over a ball can be explained: {}",
                        fmt::join(names, ", ")));
-  }
-  if (request.parameters.fit != filter::BallFit::mean) {
-    refuse("`fit`: only means can be explained, source by source; give `fit mean`");
-  }
-  if (!request.parameters.fireflies.keeps()) {
-    refuse(
-        "`fireflies`: only what is averaged like any other can be explained; give `fireflies "
-        "keep`");
   }
   const std::uint64_t last = dump.pass_bounds()[run::last_pass(dump, request.passes)];
   const std::uint64_t first = dump.pass_bounds()[request.passes.first];

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <vector>
 
 #include "core/json_text.h"
 #include "explain/words.h"
@@ -47,6 +48,7 @@ class JsonWriter {
     json["passes"] = e_.passes;
     json["blocks"] = e_.blocks;
     json["value"] = value(w.pixel);
+    if (dims(e_)) json["fireflies"] = fireflies();
     json["candidates"] = w.candidates;
     json["refusals"] = Json::array();
     for (const TermRefusals& of : w.refusals) {
@@ -68,7 +70,7 @@ class JsonWriter {
  private:
   [[nodiscard]] Json value(const PixelSums& pixel) const {
     const bool own = pixel.own.has_value();
-    return {
+    Json value = {
         {"paths", pixel.paths},
         {"filtered", triple(pixel.filtered)},
         {"own_paths", pixel.own_paths},
@@ -78,6 +80,30 @@ class JsonWriter {
         {"brightest_share", pixel.brightest_share},
         {"own_contribution", triple(pixel.baseline)},
         {"difference", triple(pixel.difference)}};
+    if (fits(e_)) value["of_means"] = triple(pixel.of_means);
+    if (spreads(e_)) value["given"] = triple(pixel.given);
+    return value;
+  }
+
+  // All among the vertices, in the order of the dump.
+  [[nodiscard]] Json fireflies() const {
+    Json list = Json::array();
+    for (const ExplainedFirefly& firefly : e_.fireflies) {
+      Json row = {{"record", record(firefly.vertex)}};
+      row.update(facts(firefly));
+      list.push_back(row);
+    }
+    return list;
+  }
+  [[nodiscard]] Json facts(const ExplainedFirefly& firefly) const {
+    Json row = {{"luminance", json_number(double{firefly.luminance})},
+                {"ordinary", json_number(firefly.ordinary)},
+                {"kept", firefly.kept}};
+    if (spreads(e_)) {
+      row["reach"] = json_number(double{firefly.reach});
+      row["given_to"] = firefly.sources;
+    }
+    return row;
   }
 
   [[nodiscard]] Json remedies() const {
@@ -132,6 +158,7 @@ class JsonWriter {
       row["paths"] = source.paths;
       row["share"] = triple(source.share);
       row["excess"] = triple(source.excess);
+      if (spreads(e_)) row["given"] = triple(source.given);
       row["apart"] = apart(source.pair);
       list.push_back(row);
     }
@@ -200,11 +227,31 @@ class JsonWriter {
     row["c_bar"] = triple(of.c_bar);
     row["averaged"] = of.neighbors;
     row["in_ball"] = of.in_ball;
-    Json& n = row["neighbors"];
-    for (const char* column : {"record", "pass", "pixel", "distance", "contribution", "share",
-                               "averaged", "in_ball", "refused_by"}) {
-      n[column] = Json::array();
+    if (fits(e_)) row["fit"] = of.fit ? fit(*of.fit) : Json(nullptr);
+    if (spreads(e_)) row["given"] = triple(of.given);
+    if (dims(e_)) {
+      const ExplainedFirefly* firefly = firefly_at(e_, of.vertex);
+      row["firefly"] = firefly != nullptr ? facts(*firefly) : Json(nullptr);
     }
+    row["neighbors"] = neighbors(of);
+    return row;
+  }
+
+  static Json fit(const ExplainedFit& fit) {
+    return {{"ridge", json_number(fit.ridge)},
+            {"mean", triple(fit.mean)},
+            {"held_at_0", {fit.taken.x < 1, fit.taken.y < 1, fit.taken.z < 1}}};
+  }
+
+  [[nodiscard]] Json neighbors(const ExplainedPath& of) const {
+    std::vector<const char*> columns = {"record",   "pass",         "pixel",
+                                        "distance", "contribution", "share",
+                                        "averaged", "in_ball",      "refused_by"};
+    if (fits(e_)) columns.push_back("weight");
+    if (dims(e_)) columns.push_back("kept");
+    if (spreads(e_)) columns.push_back("given");
+    Json n;
+    for (const char* column : columns) n[column] = Json::array();
     for (std::size_t k = of.begin; k < of.end; ++k) {
       const ExplainedPair& pair = e_.pairs[k];
       n["record"].push_back(record(pair.vertex));
@@ -212,13 +259,17 @@ class JsonWriter {
       n["pixel"].push_back(pixel(pair.vertex));
       n["distance"].push_back(pair.distance);
       n["contribution"].push_back(triple(e_.vertices.contribution[pair.vertex]));
-      n["share"].push_back(pair.averaged ? triple(share_of(e_, pair, report_.whence.pixel.paths))
-                                         : triple(Colour(0, 0, 0)));
+      n["share"].push_back(triple(share_of(e_, pair, report_.whence.pixel.paths)));
       n["averaged"].push_back(pair.averaged);
       n["in_ball"].push_back(pair.in_ball);
       n["refused_by"].push_back(pair.refusers);
+      if (fits(e_)) n["weight"].push_back(triple(weight_of(e_, pair)));
+      if (spreads(e_)) n["given"].push_back(pair.given);
+      if (!dims(e_)) continue;
+      const ExplainedFirefly* firefly = firefly_at(e_, pair.vertex);
+      n["kept"].push_back(firefly != nullptr ? firefly->kept : 1);
     }
-    return row;
+    return n;
   }
 
   const Report& report_;

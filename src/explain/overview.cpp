@@ -65,6 +65,8 @@ class Overview {
       kinds();
       surfaces();
       balls();
+      fit();
+      fireflies();
     }
     values();
     return std::move(text_);
@@ -189,6 +191,56 @@ class Overview {
     const auto n = static_cast<double>(own_.size());
     line("neighbors",
          fmt::format("mean {:.1f}, of {:.1f} in the ball", neighbors / n, in_ball / n));
+  }
+
+  void fit() {
+    if (!fits(e_)) return;
+    Range ridge, weight;
+    std::uint64_t fitted = 0, held = 0;
+    for (const ExplainedPath* path : own_) {
+      if (!path->fit) continue;
+      ++fitted;
+      held += is_held(*path->fit) ? 1u : 0u;
+      ridge.add(static_cast<float>(path->fit->ridge));
+      for (std::size_t k = path->begin; k < path->end; ++k) {
+        const ExplainedPair& pair = e_.pairs[k];
+        if (pair.averaged) weight.add(static_cast<float>(times_mean(e_, pair)));
+      }
+    }
+    if (fitted == 0) return line("fit", "linear, but of no ball: c_bar is its mean, or one source");
+    line("fit", fmt::format("linear, ridge {}: a source weighs {} times what it does in a mean",
+                            ridge.text(), weight.text()));
+    if (held > 0) {
+      line("", fmt::format("a colour of {} would be below 0, and is 0",
+                           core::counted(held, "path", "paths")));
+    }
+    line("", "means in its place give " + colour(report_.whence.pixel.of_means));
+  }
+
+  void fireflies() {
+    if (!dims(e_)) return;
+    std::set<std::uint32_t> averaged, dimmed, giving;
+    for (const ExplainedPair& pair : e_.pairs) {
+      const bool is_one = firefly_at(e_, pair.vertex) != nullptr;
+      if (pair.averaged) (is_one ? dimmed : averaged).insert(pair.vertex);
+      if (pair.given > 0) giving.insert(pair.vertex);
+    }
+    const PixelSums& pixel = report_.whence.pixel;
+    std::string text = fmt::format(
+        "{} of the {} averaged, dimmed to what they keep", core::with_commas(dimmed.size()),
+        core::counted(averaged.size() + dimmed.size(), "source", "sources"));
+    if (spreads(e_)) {
+      text = fmt::format("{}; {} {} {} of the filtered luminance", text,
+                         core::with_commas(giving.size()), giving.size() == 1 ? "gives" : "give",
+                         percent(luminance(pixel.given), luminance(pixel.filtered)));
+    }
+    line("fireflies", text);
+    std::size_t own = 0;
+    for (const ExplainedPath* path : own_) {
+      const ExplainedFirefly* firefly = firefly_at(e_, path->vertex);
+      if (firefly != nullptr && own++ < report_.top) line("", firefly_text(e_, *firefly));
+    }
+    if (own > report_.top) line("", fmt::format("and {} more", own - report_.top));
   }
 
   void values() {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/output_file.h"
+#include "explain/words.h"
 #include "export/file.h"
 #include "export/ply_header.h"
 #include "filter/weights.h"
@@ -14,7 +15,7 @@
 namespace psf::explain {
 namespace {
 
-enum class Kind { own, averaged, refused };
+enum class Kind { own, averaged, refused, giving };
 
 struct Point {
   Kind kind = Kind::refused;
@@ -30,7 +31,8 @@ std::vector<Point> points_of(const ExplainResult& e, const Attribution& whence) 
     Point& point = points[pair.vertex];
     point.used = true;
     if (pair.averaged) point.kind = Kind::averaged;
-    point.refused_by &= pair.averaged ? 0 : pair.refusers;
+    if (pair.given > 0 && point.kind != Kind::averaged) point.kind = Kind::giving;
+    point.refused_by &= brings_light(pair) ? 0 : pair.refusers;
     point.distance = std::min(point.distance, pair.distance);
   }
   for (const ExplainedPath& path : e.paths) {
@@ -66,7 +68,7 @@ class Rows {
   }
 
   // The properties of a row.
-  static std::vector<exports::PlyProperty> properties() {
+  [[nodiscard]] std::vector<exports::PlyProperty> properties() const {
     std::vector<exports::PlyProperty> all;
     for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) all.push_back({"float", name});
     for (const char* name : {"red", "green", "blue"}) all.push_back({"uchar", name});
@@ -75,6 +77,9 @@ class Rows {
       all.push_back({"float", std::string("scalar_") + name});
     }
     all.push_back({"double", "scalar_record"});
+    if (dims(e_)) {
+      for (const char* name : {"scalar_kept", "scalar_given"}) all.push_back({"float", name});
+    }
     return all;
   }
 
@@ -96,6 +101,11 @@ class Rows {
       put(static_cast<float>(value));
     }
     put(static_cast<double>(e_.record[v]));
+    if (dims(e_)) {
+      const ExplainedFirefly* firefly = firefly_at(e_, v);
+      put(firefly != nullptr ? firefly->kept : 1.0f);
+      put(static_cast<float>(fraction(source.given)));
+    }
     ++count_;
   }
 
@@ -146,7 +156,7 @@ std::uint64_t write_ply(const ExplainResult& explanation, const Attribution& whe
   core::OutputFile output(path);
   exports::ExportFile file(output.temporary_path(), path);
   file.write(exports::ply_header("psf explain: the vertices that play a part in a pixel",
-                                 rows.count(), Rows::properties()));
+                                 rows.count(), rows.properties()));
   file.write(rows.bytes());
   file.close();
   output.commit();

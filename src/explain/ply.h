@@ -12,18 +12,23 @@ namespace psf::explain {
 
 // Writes a binary little-endian point cloud of all vertices of the explanation, each once:
 // float x y z, nx ny nz (0 where the file has no normals), uchar red green blue, and
-//   float scalar_kind         0: of a path of the pixel, 1: averaged, 2: in a ball but refused
+//   float scalar_kind         0: of a path of the pixel, 1: averaged, 2: in a ball but refused, 3: a
+//                             firefly that is not averaged but gives
 //   float scalar_share        what the vertex adds to the pixel's luminance, as a fraction of it
 //   float scalar_excess       the part of this share beyond what the pixel's own paths give
-//   float scalar_paths        number of the pixel's paths that average the vertex
+//   float scalar_paths        number of the pixel's paths that average the vertex, or to which it
+//                             gives
 //   float scalar_distance     to the nearest of the pixel's vertices whose ball holds this vertex
 //   float scalar_refused_by   sum of 2^k over the terms k that refuse it in every ball, or 0;
 //                             k = 8: one of the two is in a volume
 //   float scalar_x, scalar_y  pixel of the vertex
 //   double scalar_record      number of the vertex in the dump, for which float is too short
+// and where fireflies are not kept
+//   float scalar_kept         what is averaged of the vertex, from 0 to 1: below 1 it is a firefly
+//   float scalar_given        the part of scalar_share that the vertex gives as a firefly
 // Lengths are in world units.
-// Colours: the pixel's own vertices are red; averaged ones are dark grey to white with the root of
-// their share; refused ones have the colour in kTermColours of the first term that refuses them.
+// Colours: the pixel's own vertices are red; averaged ones, and fireflies, are dark grey to white with
+// the root of their share; refused ones have the colour in kTermColours of the first term that refuses them.
 // Returns the number of points. Throws Error{io}.
 std::uint64_t write_ply(const ExplainResult& explanation, const Attribution& whence,
                         const std::string& path);

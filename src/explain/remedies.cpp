@@ -8,7 +8,6 @@
 
 #include "filter/channels.h"
 #include "filter/kinds.h"
-#include "filter/values.h"
 
 namespace psf::explain {
 namespace {
@@ -58,9 +57,13 @@ Colour PixelIf::unfiltered(std::uint32_t vertex) const {
   return e_.vertices.unfiltered.empty() ? Colour(0, 0, 0) : wide(e_.vertices.unfiltered[vertex]);
 }
 
-void PixelIf::Averaged::add(const Rgb& value, float area) {
-  sum += double{area} * wide(value);
-  ++count;
+void PixelIf::add(const ExplainedPair& pair, Averaged& averaged) const {
+  const Rgb& value = e_.value[pair.vertex];
+  averaged.sum += double{pair.area} * wide(value);
+  ++averaged.count;
+  if (e_.request.parameters.fit == filter::BallFit::linear) {
+    averaged.fitted.push_back({pair.vertex, value});
+  }
 }
 
 Colour PixelIf::reflected(const ExplainedPath& path, const Averaged& averaged) const {
@@ -72,10 +75,13 @@ Colour PixelIf::reflected(const ExplainedPath& path, const Averaged& averaged) c
                     path.radius * path.radius > 0 && !in_volume(e_.vertices, path.vertex);
   Colour mean =
       averaged.sum / (disk ? std::numbers::pi * r * r : static_cast<double>(averaged.count));
-  if (!parameters.demodulate) return alpha * mean;
-  const Rgb& rho = e_.vertices.reflectance[path.vertex];
-  for (int c = 0; c < 3; ++c) mean[c] *= rho[c] > 0 ? double{rho[c]} : 1;
-  return alpha * mean;
+  if (!averaged.fitted.empty()) {
+    const std::optional<PathFit> fit =
+        fit_path(e_.vertices.view(), path.vertex, path.radius, averaged.fitted);
+    if (fit) mean = fit->value;
+  }
+  if (parameters.demodulate) mean = remodulated(mean, e_.vertices.reflectance[path.vertex]);
+  return alpha * mean + averaged.given;
 }
 
 double Remedy::gain(std::uint64_t all_leaking, std::uint64_t all_others) const {
@@ -103,7 +109,7 @@ std::vector<Remedy> find_remedies(const ExplainResult& explanation, const PixelI
       if (filter::info(term).threshold != nullptr) remedy.threshold = threshold;
       std::uint64_t all[2] = {0, 0};
       for (const ExplainedPair& pair : e.pairs) {
-        if (!pair.averaged || pair.self) continue;
+        if (!brings_light(pair) || pair.self) continue;
         ++all[leaking[pair.vertex] ? 1 : 0];
         if (!passes(pair)) ++(leaking[pair.vertex] ? remedy.leaking : remedy.others);
       }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "explain/attribution.h"
+#include "explain/path_fit.h"
 #include "filter/weights.h"
 
 namespace psf::explain {
@@ -17,7 +18,8 @@ class PixelIf {
 
   [[nodiscard]] Colour unfiltered(std::uint32_t vertex) const;  // u_i
   // The pixel if exactly those pairs were averaged for which `accepts` is true, and the pairs of a
-  // path with itself. A path that is left without any pair keeps its average.
+  // path with itself. A path that is left without any pair keeps its average. Fireflies give as they
+  // do, but for what `accepts` refuses and the weights do not.
   template <typename Accepts>
   [[nodiscard]] Colour operator()(Accepts accepts) const {
     Colour sum(0, 0, 0);
@@ -30,8 +32,10 @@ class PixelIf {
       Averaged averaged;
       for (std::size_t p = path.begin; p < path.end; ++p) {
         const ExplainedPair& pair = e_.pairs[p];
-        if (pair.in_ball && (pair.self || accepts(pair)))
-          averaged.add(e_.value[pair.vertex], pair.area);
+        const bool accepted = pair.self || accepts(pair);
+        if (pair.in_ball && accepted) add(pair, averaged);
+        if (pair.given > 0 && (accepted || pair.refusers != 0))
+          averaged.given += given_of(e_, pair, 1);
       }
       sum += reflected(path, averaged);
     }
@@ -42,8 +46,10 @@ class PixelIf {
   struct Averaged {
     Colour sum{0, 0, 0};
     std::uint64_t count = 0;
-    void add(const Rgb& value, float area);
+    std::vector<FitSource> fitted;  // with [fit]
+    Colour given{0, 0, 0};          // times alpha_i and rho_i
   };
+  void add(const ExplainedPair& pair, Averaged& averaged) const;
   [[nodiscard]] Colour reflected(const ExplainedPath& path, const Averaged& averaged) const;
 
   const ExplainResult& e_;

@@ -1,10 +1,12 @@
 // The tables of an explained pixel's text: refusals, whence the light came, remedies, paths.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
+#include <vector>
 
 #include "core/text.h"
 #include "explain/words.h"
@@ -29,6 +31,7 @@ class Tables {
       remedies();
       pixels();
       sources();
+      fireflies();
     }
     paths();
     return std::move(text_);
@@ -73,7 +76,8 @@ class Tables {
     if (w_.leak == 0) return;
     const bool lower = luminance(w_.pixel.difference) < 0;
     say("\n{} {}\n", core::counted(w_.sources.size(), "source is", "sources are"),
-        fmt::format("averaged; {} {} all of the difference", core::with_commas(w_.leak),
+        fmt::format("averaged{}; {} {} all of the difference",
+                    spreads(e_) ? " or give as fireflies" : "", core::with_commas(w_.leak),
                     w_.leak == 1 ? (lower ? "lowers the pixel by" : "raises the pixel by")
                                  : (lower ? "lower the pixel by" : "raise the pixel by")));
     if (w_.kinds.empty()) return;
@@ -143,21 +147,65 @@ class Tables {
   }
 
   void sources() {
-    say("\n{:<12}{:>6}{:>10}{:>11}{:>8}{:>10}{:>8}{:>8}{:>9}{:>10}{:>8}\n", "source", "pass",
-        "pixel", "adds", "share", "distance", "angle", "albedo", "lights", "material", "plane");
+    say("\n{:<12}{:>6}{:>10}{:>11}{:>8}{:>10}{:>8}{:>8}{:>9}{:>10}{:>8}", "source", "pass", "pixel",
+        "adds", "share", "distance", "angle", "albedo", "lights", "material", "plane");
+    if (fits(e_)) say("{:>9}", "weight");
+    if (dims(e_)) say("{:>9}", "keeps");
+    say("\n");
     for (std::size_t k = 0; k < rows_of(w_.sources.size()); ++k) {
       const SourceShare& source = w_.sources[k];
       const ExplainedPair& pair = e_.pairs[source.pair];
       const PairFeatures f = features_of(e_, pair);
       const auto [x, y] = pixel_of(e_, source.vertex);
-      say("  {:<10}{:>6}{:>10}{:>+11.3g}{:>8}{:>10.3g}{:>8}{:>8}{:>9}{:>10}{:>8}\n",
+      say("  {:<10}{:>6}{:>10}{:>+11.3g}{:>8}{:>10.3g}{:>8}{:>8}{:>9}{:>10}{:>8}",
           e_.record[source.vertex], e_.pass[source.vertex], fmt::format("{},{}", x, y),
           luminance(source.excess), percent(luminance(source.share), luminance(w_.pixel.filtered)),
           pair.distance, cell(v_.normal, 1, f.angle.value_or(0)),
           cell(v_.reflectance, 3, f.reflectance.value_or(0)), lights(pair, f), material(pair, f),
           cell(v_.normal, 2, f.plane.value_or(0)));
+      if (fits(e_)) say("{:>9}", weight(pair));
+      if (dims(e_)) say("{:>9}", kept(source.vertex));
+      say("\n");
     }
     rest(w_.sources.size());
+  }
+  [[nodiscard]] std::string weight(const ExplainedPair& pair) const {
+    return pair.averaged ? fmt::format("{:.2f}x", times_mean(e_, pair)) : "-";
+  }
+  [[nodiscard]] std::string kept(std::uint32_t vertex) const {
+    const ExplainedFirefly* firefly = firefly_at(e_, vertex);
+    return firefly != nullptr ? percent(double{firefly->kept}, 1.0) : "all";
+  }
+
+  // The fireflies among the sources, those first that add most to the pixel.
+  void fireflies() {
+    std::vector<const SourceShare*> rows;
+    for (const SourceShare& source : w_.sources) {
+      if (firefly_at(e_, source.vertex) != nullptr) rows.push_back(&source);
+    }
+    if (rows.empty()) return;
+    std::stable_sort(rows.begin(), rows.end(), [](const auto* a, const auto* b) {
+      return luminance(a->share) > luminance(b->share);
+    });
+    say("\n{:<12}{:>6}{:>10}{:>11}{:>11}{:>9}", "firefly", "pass", "pixel", "luminance", "ordinary",
+        "keeps");
+    if (spreads(e_)) say("{:>12}{:>10}{:>12}", "to sources", "within", "gives here");
+    say("{:>12}{:>8}\n", "adds in all", "share");
+    for (std::size_t k = 0; k < rows_of(rows.size()); ++k) {
+      const SourceShare& source = *rows[k];
+      const ExplainedFirefly& of = *firefly_at(e_, source.vertex);
+      const auto [x, y] = pixel_of(e_, source.vertex);
+      say("  {:<10}{:>6}{:>10}{:>11.4g}{:>11.4g}{:>9}", e_.record[source.vertex],
+          e_.pass[source.vertex], fmt::format("{},{}", x, y), of.luminance, of.ordinary,
+          kept(source.vertex));
+      if (spreads(e_)) {
+        say("{:>12}{:>10.3g}{:>12.3g}", core::with_commas(of.sources), of.reach,
+            luminance(source.given));
+      }
+      say("{:>12.3g}{:>8}\n", luminance(source.share),
+          percent(luminance(source.share), luminance(w_.pixel.filtered)));
+    }
+    rest(rows.size());
   }
   // What the source sees and the vertex does not, or the other way round.
   [[nodiscard]] std::string lights(const ExplainedPair& pair, const PairFeatures& features) const {
@@ -182,8 +230,11 @@ class Tables {
   }
 
   void paths() {
-    say("\n{:<12}{:>6}{:>12}{:>11}{:>10}{:>11}{:>11}{:>11}{:>11}\n", "path", "pass", "radius",
+    say("\n{:<12}{:>6}{:>12}{:>11}{:>10}{:>11}{:>11}{:>11}{:>11}", "path", "pass", "radius",
         "neighbors", "in ball", "alpha", "c", "c_bar", "u");
+    if (fits(e_)) say("{:>11}", "if mean");
+    if (spreads(e_)) say("{:>11}", "given");
+    say("\n");
     const auto light = [](const Rgb& c) { return fmt::format("{:.4g}", psf::luminance(c)); };
     for (std::size_t p = 0; p < rows_of(e_.paths.size()); ++p) {
       const ExplainedPath& path = e_.paths[p];
@@ -195,10 +246,13 @@ class Tables {
         continue;
       }
       const bool averaged = path.fate == PathFate::averaged;
-      say("  {:<10}{:>6}{:>12.4g}{:>11}{:>10}{:>11}{:>11}{:>11}{:>11}\n", e_.record[i], e_.pass[i],
+      say("  {:<10}{:>6}{:>12.4g}{:>11}{:>10}{:>11}{:>11}{:>11}{:>11}", e_.record[i], e_.pass[i],
           path.radius, averaged ? core::with_commas(path.neighbors) : fate,
           core::with_commas(path.in_ball), light(v_.throughput[i]),
           e_.is_source[i] ? light(v_.contribution[i]) : "none", light(path.c_bar), u);
+      if (fits(e_)) say("{:>11.4g}", luminance(if_mean(path)));
+      if (spreads(e_)) say("{:>11}", light(path.given));
+      say("\n");
       if (report_.vertices) vertex(i, path);
     }
     rest(e_.paths.size());
@@ -211,6 +265,10 @@ class Tables {
         point(path.c_bar));
     if (!v_.unfiltered.empty()) say(" u {}", point(v_.unfiltered[i]));
     say("\n");
+    if (path.fit) {
+      say("    ridge {:.4g} mean {}{}\n", path.fit->ridge, point(path.fit->mean),
+          is_held(*path.fit) ? ", a colour of the fit held at 0" : "");
+    }
   }
 
   const Report& report_;

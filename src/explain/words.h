@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "core/text.h"
 #include "explain/report.h"
 #include "filter/parameters/terms.h"
 
@@ -29,7 +30,8 @@ inline std::string term_name(std::size_t term) {
 }
 
 // A point as text; -0 is shown as 0.
-inline std::string point(const Vec3& v) {
+template <typename V>
+std::string point(const V& v) {
   return fmt::format("({:.4g}, {:.4g}, {:.4g})", v.x + 0, v.y + 0, v.z + 0);
 }
 
@@ -38,6 +40,38 @@ inline std::string percent(double part, double all) {
 }
 inline std::string percent(std::uint64_t part, std::uint64_t all) {
   return percent(static_cast<double>(part), static_cast<double>(all));
+}
+
+// The weight of a pair in times that of a mean, for the luminance.
+inline double times_mean(const ExplainResult& explanation, const ExplainedPair& pair) {
+  return luminance(weight_of(explanation, pair)) / explanation.paths[pair.path].scale;
+}
+// A firefly in a sentence.
+inline std::string firefly_text(const ExplainResult& explanation, const ExplainedFirefly& firefly) {
+  std::string text =
+      fmt::format("path {} is one: {:.3g} times what is ordinary there; keeps {}",
+                  explanation.record[firefly.vertex], double{firefly.luminance} / firefly.ordinary,
+                  percent(double{firefly.kept}, 1.0));
+  if (firefly.sources == 0) return text;
+  return text + fmt::format(", gives the rest to {} within {:.3g}",
+                            core::counted(firefly.sources, "source", "sources"), firefly.reach);
+}
+
+// Whether a colour of the path's fit would be below 0 and is 0.
+inline bool is_held(const ExplainedFit& fit) {
+  return fit.taken.x < 1 || fit.taken.y < 1 || fit.taken.z < 1;
+}
+
+// What of the pixel is there to be told: fits in place of means; fireflies that are dimmed; what they
+// give.
+inline bool fits(const ExplainResult& explanation) {
+  return explanation.request.parameters.fit == filter::BallFit::linear;
+}
+inline bool dims(const ExplainResult& explanation) {
+  return !explanation.request.parameters.fireflies.keeps();
+}
+inline bool spreads(const ExplainResult& explanation) {
+  return explanation.request.parameters.fireflies.spreads();
 }
 
 inline bool has_vertex(const ExplainedPath& path) {

@@ -12,6 +12,8 @@
 
 namespace psf::filter {
 
+class Fireflies;
+
 // The result of estimate(); every array is indexed by record number.
 struct Estimates {
   // Records that are `query` or `source` have c_bar; `left_out` is in no picture.
@@ -30,7 +32,9 @@ struct Estimates {
 // the records. A record whose ball holds itself alone keeps c_i bit for bit. The result is the same
 // for any number of threads. Throws Error{bad_input} where a channel that `parameters` use is
 // missing, Error{usage} for the estimator `disk` with several cameras, Error{interrupted} on ^C.
+// Adds to `fireflies`, where it is given, those that were found: apart for surfaces and volumes.
 [[nodiscard]] Estimates estimate(const Records& records, std::span<const float> radius,
-                                 const Block& block, const Parameters& parameters);
+                                 const Block& block, const Parameters& parameters,
+                                 std::vector<Fireflies>* fireflies = nullptr);
 
 }  // namespace psf::filter

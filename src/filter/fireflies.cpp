@@ -81,7 +81,20 @@ void Fireflies::find(const Problem& problem, std::span<const Rgb> values,
     records_.push_back(j);
   }
   records_ = search::compact_order(problem.records.position, records_);
-  for (const std::uint32_t j : records_) luminance_.push_back(luminance(values[j]));
+  for (const std::uint32_t j : records_) {
+    luminance_.push_back(luminance(values[j]));
+    ordinary_.push_back(double{roots[j].x} * double{roots[j].x});
+  }
+}
+
+Firefly Fireflies::operator[](std::size_t g) const {
+  const std::uint32_t j = records_[g];
+  return {j,        luminance_[g],           ordinary_[g],
+          kept_[j], gives() ? reach_[g] : 0, gives() ? inverse_[g] : 0};
+}
+
+void Fireflies::to_world(const Scaled& scaled) {
+  for (float& reach : reach_) reach = scaled.to_world(reach);
 }
 
 std::vector<float> Fireflies::reaches(const Problem& problem, EngineKind engine) const {
@@ -117,10 +130,10 @@ std::vector<float> Fireflies::reaches(const Problem& problem, EngineKind engine)
 }
 
 void Fireflies::find_receivers(const Problem& problem, EngineKind engine) {
-  const std::vector<float> reach = reaches(problem, engine);
+  reach_ = reaches(problem, engine);
   std::vector<std::vector<std::uint32_t>> receivers(records_.size());
   inverse_.resize(records_.size());
-  make_lists(engine, problem, records_, reach)->each([&](std::size_t g, auto near) {
+  make_lists(engine, problem, records_, reach_)->each([&](std::size_t g, auto near) {
     const std::uint32_t j = records_[g];
     receivers[g].push_back(j);
     std::uint64_t sources = 1;  // N_j: as in a mean, sources stand for the queries around them
@@ -149,10 +162,8 @@ void Fireflies::give(std::span<const Rgb> values, std::span<Rgb> out) const {
   core::parallel_for(out.size(), kFireflyGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Sum sum;
-      for (std::uint64_t k = first_[i]; k < first_[i + 1]; ++k) {
-        const std::uint32_t j = records_[givers_[k]];
-        sum.add(values[j], (1 - double{kept_[j]}) * inverse_[givers_[k]]);
-      }
+      each_giver(static_cast<std::uint32_t>(i),
+                 [&](std::uint32_t j, double share) { sum.add(values[j], share); });
       out[i] = sum.over(1);
     }
   });

@@ -2,14 +2,26 @@
 // the ball's size; here they are given out over a distance of their own, or dimmed.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/vec.h"
 #include "filter/problem.h"
+#include "filter/scaled.h"
 
 namespace psf::filter {
+
+// A firefly j, for those who look at them one by one.
+struct Firefly {
+  std::uint32_t record = 0;
+  float luminance = 0;    // Y_j
+  double ordinary = 0;    // m_j
+  float kept = 1;         // p_j
+  float reach = 0;        // R_j; 0 where nothing is given
+  double per_source = 0;  // 1 / N_j; 0 where nothing is given
+};
 
 class Fireflies {
  public:
@@ -22,6 +34,11 @@ class Fireflies {
   // Their record numbers, in a compact order.
   [[nodiscard]] std::span<const std::uint32_t> records() const { return records_; }
 
+  // The g-th of them.
+  [[nodiscard]] Firefly operator[](std::size_t g) const;
+  // Turns R_j from the unit of `scaled` into world units.
+  void to_world(const Scaled& scaled);
+
   // p_j by record number: the share of a source's value that is averaged like any other, in [0, 1].
   // It is below 1 for fireflies, and 1 for every other record.
   [[nodiscard]] std::span<const float> kept() const { return kept_; }
@@ -30,6 +47,15 @@ class Fireflies {
   // Sets out[i], of every record i, to what it is given: the sum over the fireflies j that reach it of
   // (1 - p_j) v_j / N_j. `values`, by record number: v.
   void give(std::span<const Rgb> values, std::span<Rgb> out) const;
+  // Calls visit(j, share) for every firefly j that gives to record i; share: (1 - p_j) / N_j.
+  template <typename Visit>
+  void each_giver(std::uint32_t i, const Visit& visit) const {
+    if (!gives()) return;
+    for (std::uint64_t k = first_[i]; k < first_[i + 1]; ++k) {
+      const std::uint32_t j = records_[givers_[k]];
+      visit(j, (1 - double{kept_[j]}) * inverse_[givers_[k]]);
+    }
+  }
 
   void add_to(Statistics& statistics) const;
 
@@ -42,7 +68,9 @@ class Fireflies {
 
   std::vector<float> kept_;
   std::vector<std::uint32_t> records_;
-  std::vector<float> luminance_;        // of these
+  // Of these. Reaches only where they give.
+  std::vector<float> luminance_, reach_;
+  std::vector<double> ordinary_;
   double light_apart_ = 0, light_ = 0;  // luminance of all sources: what is not kept, and all
 
   // By record number: the givers of i are givers_[first_[i]] up to givers_[first_[i + 1]], places

@@ -97,7 +97,7 @@ Fit fit_of(const FitMoments& moments) {
       scatter[product_at(k, l)] -= moments.sum[k] * mean_feature[l];
     scatter[product_at(k, k)] += ridge;
   }
-  Fit fit{solve(scatter, mean_feature, ridge)};
+  Fit fit{.slope = solve(scatter, mean_feature, ridge), .ridge = ridge};
   for (std::size_t k = 0; k < kFeatures; ++k) fit.at_mean += fit.slope[k] * mean_feature[k];
   return fit;
 }

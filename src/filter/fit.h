@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "core/vec.h"
@@ -29,6 +30,12 @@ struct FitAxes {
 [[nodiscard]] std::span<const Vec3> facing(const Records& records);
 // `r_i`: the radius of record i; infinite: places say nothing.
 [[nodiscard]] FitAxes fit_axes(const Records& records, std::uint32_t i, float r_i);
+// f_ij from x_j - x_i and y_j - y_i.
+[[nodiscard]] inline std::array<double, kFeatures> features(const FitAxes& axes, const Vec3& place,
+                                                            const Vec3& facing) {
+  return {double{dot(place, axes.place[0])}, double{dot(place, axes.place[1])},
+          double{dot(facing, axes.facing[0])}, double{dot(facing, axes.facing[1])}};
+}
 
 // Sums over the sources in a ball.
 struct FitMoments {
@@ -44,6 +51,7 @@ struct FitMoments {
 struct Fit {
   std::array<double, kFeatures> slope{};
   double at_mean = 0;
+  double ridge = std::numeric_limits<double>::infinity();  // lambda_i; infinite: it is the mean
 
   [[nodiscard]] double weight(const std::array<double, kFeatures>& f) const;
 };
@@ -56,6 +64,7 @@ class FitShares {
   // `beside`: fit minus mean.
   FitShares(const Sum& mean, const Sum& beside)
       : x_(share(mean.x, beside.x)), y_(share(mean.y, beside.y)), z_(share(mean.z, beside.z)) {}
+  [[nodiscard]] std::array<double, 3> each() const { return {x_, y_, z_}; }
   // The result for the whole light or for a layer of it.
   [[nodiscard]] Rgb taken(const Sum& mean, const Sum& beside) const {
     return {taken(mean.x, beside.x, x_), taken(mean.y, beside.y, y_), taken(mean.z, beside.z, z_)};

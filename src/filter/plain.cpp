@@ -71,9 +71,7 @@ class Worker {
     FitMoments moments;
     features_.clear();
     for (const std::uint32_t j : averaged_) {
-      const auto& f = features_.emplace_back(std::array<double, kFeatures>{
-          double{dot(x[j] - x[i], axes.place[0])}, double{dot(x[j] - x[i], axes.place[1])},
-          double{dot(y[j] - y[i], axes.facing[0])}, double{dot(y[j] - y[i], axes.facing[1])}});
+      const auto& f = features_.emplace_back(features(axes, x[j] - x[i], y[j] - y[i]));
       moments.add(f, double{luminance(all_[0].values[j])});
     }
     const Fit fit = fit_of(moments);

@@ -14,11 +14,14 @@ namespace {
 using namespace tests;  // NOLINT: the set-up that these tests share
 
 TEST_CASE("The pixel without a term, and with another, is the picture without it and with it") {
+  const filter::BallFit fit = GENERATE(filter::BallFit::mean, filter::BallFit::linear);
   const TempFolder folder;
   write_dump(folder / "a.pvb", random_records(900, 6, 0, kOne), {kOne, {300, 300, 300}, {}});
   const run::Dump dump(folder / "a.pvb");
   FilterRequest run = default_run("1pass");
   run.parameters.weights = terms_of(1 + 4);
+  run.parameters.fit = fit;
+  if (fit == filter::BallFit::linear) run.parameters.engine = filter::EngineKind::brute;  // exact
   const auto picture_with = [&](const filter::WeightTerms& terms) {
     FilterRequest other = run;
     other.parameters.weights = terms;

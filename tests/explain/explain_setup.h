@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <random>
 #include <string>
 
 #include "explain/attribution.h"
@@ -64,6 +65,46 @@ inline RecordSet half_lit_floor() {
     set.contribution[i] = lit ? Rgb(1, 1, 1) : Rgb(0.125f, 0.125f, 0.125f);
   }
   return set;
+}
+
+inline constexpr std::size_t kSide = 20, kRecords = kSide * kSide;
+inline const std::vector<filter::CameraView> kSquare = {{kSide, kSide, 0.05}};
+
+// A bent sheet that one pass looks at, a path a pixel, alpha 1 and u 0: a picture of it is c_bar.
+inline RecordSet sheet(std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> unit(0, 1);
+  RecordSet set(kRecords);
+  for (std::size_t i = 0; i < kRecords; ++i) {
+    set.pixel[i] = static_cast<std::uint32_t>(i);
+    const float x = unit(random), z = unit(random);
+    set.position[i] = Vec3(x, 0.1f * x * x, z);
+    set.normal[i] = Vec3(-0.2f * x, 1, 0).normalized();
+    set.contribution[i] = Rgb(0.5f + x + 0.3f * unit(random), 1 + unit(random), 2 + z);
+    set.reflectance[i] = Rgb(0.3f + 0.5f * z, 0.5f, x > 0.5f ? 0.0f : 0.7f);
+    if (i % 57 == 3) set.contribution[i] *= 20 + 300 * unit(random);
+  }
+  return set;
+}
+
+inline FilterRequest sheet_run(filter::BallFit fit, filter::FireflyRule rule) {
+  FilterRequest run = default_run("all");
+  run.parameters.radius = {0.25, filter::RadiusBasis::world, 0};
+  run.parameters.weights = filter::WeightTerms::none();
+  run.parameters.engine = filter::EngineKind::brute;
+  run.parameters.fit = fit;
+  run.parameters.fireflies = rule;
+  return run;
+}
+
+inline constexpr filter::FireflyRule kKeep = {}, kSpread = {filter::FireflyRule::Kind::spread},
+                                     kClamp = {filter::FireflyRule::Kind::clamp, 3};
+
+inline explain::ExplainResult explain_path(const run::Dump& dump, const FilterRequest& run,
+                                           std::uint64_t path) {
+  explain::ExplainRequest request = request_of(run, 0, 0, 0);
+  request.path = path;
+  return explain::explain(dump, request);
 }
 
 }  // namespace psf::tests

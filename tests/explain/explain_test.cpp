@@ -37,6 +37,26 @@ std::vector<std::pair<std::string, FilterRequest>> ways() {
   filter::Parameters* footprint = add("footprint", "2passes", 2);
   footprint->radius = {4, filter::RadiusBasis::footprint};
   footprint->radius.count = filter::RadiusCount::blocks;
+  // Fits of the plain engine, which are exact.
+  const auto linear = [](filter::Parameters* parameters) {
+    parameters->fit = filter::BallFit::linear;
+    parameters->engine = filter::EngineKind::brute;
+    return parameters;
+  };
+  const auto spread = [](filter::Parameters* parameters) {
+    parameters->fireflies = {filter::FireflyRule::Kind::spread};
+    return parameters;
+  };
+  linear(add("fit", "all", 4));
+  spread(add("fireflies spread", "2passes", 4));
+  add("fireflies clamped", "2passes", 4)->fireflies = {filter::FireflyRule::Kind::clamp, 2};
+  spread(linear(add("fit and fireflies, demodulated", "all", 4)))->demodulate = true;
+  spread(linear(add("fit and fireflies, adaptive", "all", 68)))->estimator =
+      filter::Estimator::adaptive;
+  spread(linear(add("fit and fireflies, few sources", "all", 64)))->sources = 3;
+  filter::Parameters* both = spread(linear(add("fit and fireflies, iterated", "all", 4)));
+  both->demodulate = true;
+  both->iterations = 3;
   return list;
 }
 
@@ -44,7 +64,7 @@ constexpr std::uint32_t kStep = 7;  // pixels
 
 // Counts, over pixels, the numbers that differ from the picture's, and the cases that were seen.
 struct Agreement {
-  std::size_t wrong = 0, orphans = 0, all_shaded = 0;
+  std::size_t wrong = 0, orphans = 0, all_shaded = 0, given = 0, fitted = 0;
 
   void expect(bool right) { wrong += right ? 0u : 1u; }
 
@@ -61,10 +81,12 @@ struct Agreement {
       neighbors += path.neighbors;
       radius += double{path.radius};
       std::uint32_t averaged = 0;
+      given += path.given.x > 0 ? 1u : 0u;
+      fitted += path.fit ? 1u : 0u;
       for (std::size_t p = path.begin; p < path.end; ++p) {
         const explain::ExplainedPair& pair = explanation.pairs[p];
         averaged += pair.averaged && pair.in_ball ? 1u : 0u;
-        if (pair.averaged) sum += explain::share_of(explanation, pair, whence.pixel.paths);
+        sum += explain::share_of(explanation, pair, whence.pixel.paths);
       }
       const bool is_orphan = path.fate == explain::PathFate::orphan;
       orphans += is_orphan ? 1u : 0u;
@@ -90,7 +112,8 @@ struct Agreement {
 TEST_CASE("Shares, neighbours, radius and own paths of a pixel are those of the picture") {
   const TempFolder folder;
   for (const double unshaded : {0.0, 0.6}) {
-    const RecordSet set = random_records(1100, 3, unshaded, kTwo);
+    RecordSet set = random_records(1100, 3, unshaded, kTwo);
+    for (std::size_t i = 0; i < set.size(); i += 29) set.contribution[i] *= 40;
     write_dump(folder / "a.pvb", set, {kTwo, {400, 400, 300}, {}});
     const run::Dump dump(folder / "a.pvb");
     for (const auto& [name, run] : ways()) {
@@ -106,6 +129,8 @@ TEST_CASE("Shares, neighbours, radius and own paths of a pixel are those of the 
       CHECK(agreement.wrong == 0);
       if (unshaded == 0 && run.parameters.sources == 1) CHECK(agreement.all_shaded > 0);
       if (unshaded > 0 && run.parameters.radius.r0 == 0) CHECK(agreement.orphans > 0);
+      CHECK((agreement.given > 0) == run.parameters.fireflies.spreads());
+      CHECK((agreement.fitted > 0) == (run.parameters.fit == filter::BallFit::linear));
     }
   }
 }
@@ -232,12 +257,13 @@ TEST_CASE("What cannot be explained is an error of the right kind") {
   FilterRequest hash = run;
   hash.parameters.estimator = filter::Estimator::hash;
   CHECK(code_of(request_of(hash, 0, 0, 0)) == ErrorCode::usage);
-  FilterRequest fit = run;
+  FilterRequest fit = run;  // of what has no mean over a ball
+  fit.parameters.estimator = filter::Estimator::disk;
   fit.parameters.fit = filter::BallFit::linear;
   CHECK(code_of(request_of(fit, 0, 0, 0)) == ErrorCode::usage);
-  FilterRequest fireflies = run;
-  fireflies.parameters.fireflies = {filter::FireflyRule::Kind::spread};
-  CHECK(code_of(request_of(fireflies, 0, 0, 0)) == ErrorCode::usage);
+  FilterRequest control = run;
+  control.parameters.estimator = filter::Estimator::control;
+  CHECK(code_of(request_of(control, 0, 0, 0)) == ErrorCode::usage);
   CHECK(code_of(request_of(run, 0, 0, 10)) == ErrorCode::usage);
   CHECK(code_of(request_of(run, 1, 0, 0)) == ErrorCode::usage);
   CHECK(code_of(request_of(run, 0, 19, 9)) == ErrorCode::bad_input);

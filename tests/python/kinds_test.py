@@ -137,6 +137,34 @@ class Kinds(unittest.TestCase):
         self.assertEqual(path["averaged"], len(averaged))
         self.assertEqual(path["averaged"], self.filtered().neighbors[i])
 
+    def test_explained_fits_and_fireflies_add_up_in_volumes_too(self) -> None:
+        records = {**self.records, "contribution": self.records["contribution"].copy()}
+        records["contribution"][::31] *= 60
+        path = os.path.join(self.folder.name, "bright.pvb")
+        shapes = {name: (values.dtype.str[1:], 3) if values.ndim == 2 else values.dtype.str[1:]
+                  for name, values in records.items()}
+        with psf.create(path, [CAMERA], shapes) as writer:
+            writer.append(**records)
+            writer.commit_pass()
+        terms = {**TERMS, "r0": "0.8wu", "fit": "linear", "fireflies": "spread", "search": "brute"}
+        c_bar = psf.filter_records(cameras=[CAMERA], parameters=terms, no_weights=True,
+                                   **records).c_bar
+        dump, fitted, given = psf.open(path), [0, 0, 0], [0, 0, 0]
+        for i in range(0, COUNT, 8):
+            explained = dump.explain(path=i, no_weights=True, **terms)["paths"][0]
+            kind, of = records["kind"][i], explained["neighbors"]
+            kept, part = (np.array(of[name])[:, np.newaxis] for name in ("kept", "given"))
+            light = np.array(of["contribution"])
+            total = (np.array(of["weight"]) * kept * light + part * light).sum(axis=0)
+            self.assertTrue(np.allclose(total, c_bar[i], rtol=1e-5, atol=1e-6), i)
+            fitted[kind] += explained["fit"] is not None
+            given[kind] += bool((part > 0).any())
+            brings = np.array(of["averaged"]) | (part[:, 0] > 0)
+            volume = records["kind"][np.array(of["record"])[brings]] == 2
+            self.assertTrue((volume == (kind == 2)).all(), i)
+        self.assertGreater(min(fitted), 3)
+        self.assertGreater(min(given), 1)
+
     @unittest.skipUnless(os.path.exists(os.path.join(PROGRAMS, "psf-render")), "no renderer")
     def test_the_vertex_that_is_chosen_brings_its_kind(self) -> None:
         """Of paths without the channel, whose vertices have one."""

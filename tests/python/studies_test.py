@@ -188,6 +188,13 @@ class Studies(unittest.TestCase):
             self.assertEqual(content(self.file("p." + end)), content(self.file("c." + end)))
         with open(self.file("c.json"), encoding="utf-8") as file:
             self.assertEqual(dict(explained), json.load(file))
+        said = run("psf", "explain", self.paths[0], "--pixel", "3,20", "--fit", "linear",
+                   "--fireflies", "spread", "--json", self.file("f.json"))
+        explained = dump.explain((3, 20), fit="linear", fireflies="spread")
+        self.assertEqual(str(explained), said)
+        with open(self.file("f.json"), encoding="utf-8") as file:
+            self.assertEqual(dict(explained), json.load(file))
+        self.assertIn("weight", explained["paths"][0]["neighbors"])
         said = run("psf", "explain", self.paths[0], "--path", "77", "--all", "--passes", "0:4")
         self.assertEqual(dump.explain(path=77, passes=4).text(None), said)
 

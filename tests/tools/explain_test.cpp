@@ -61,17 +61,18 @@ struct Point {
   std::array<unsigned char, 3> colour{};
   float kind = 0, share = 0, excess = 0, paths = 0, distance = 0, refused_by = 0, x = 0, y = 0;
   double record = 0;
+  float kept = 1, given = 0;  // where fireflies are not kept
 };
 
-std::vector<Point> read_points(const std::string& path) {
+std::vector<Point> read_points(const std::string& path, bool fireflies = false) {
   const std::string text = read_text(path);
   const std::string start = "ply\nformat binary_little_endian 1.0\n";
   REQUIRE(text.compare(0, start.size(), start) == 0);
   const std::string element = "element vertex ", end = "end_header\n";
   const std::size_t count = std::stoul(text.substr(text.find(element) + element.size()));
   std::size_t at = text.find(end) + end.size();
-  constexpr std::size_t kRow = 6 * 4 + 3 + 8 * 4 + 8;
-  REQUIRE(text.size() == at + count * kRow);
+  const std::size_t row = 6 * 4 + 3 + 8 * 4 + 8 + (fireflies ? 2 * 4 : 0);
+  REQUIRE(text.size() == at + count * row);
   std::vector<Point> points(count);
   const auto take = [&](auto& value) {
     std::memcpy(&value, text.data() + at, sizeof value);
@@ -86,6 +87,9 @@ std::vector<Point> read_points(const std::string& path) {
       take(*value);
     }
     take(point.record);
+    if (!fireflies) continue;
+    take(point.kept);
+    take(point.given);
   }
   return points;
 }
@@ -95,7 +99,9 @@ std::vector<Point> read_points(const std::string& path) {
 TEST_CASE("psf explain gives the pixel that psf filter gives, as the sum of its shares") {
   const Explained work;
   for (const std::string options :
-       {"", "--no-weights --block all", "--demodulate --r0 0.1", "--sources 1/3 --passes 1:4"}) {
+       {"", "--no-weights --block all", "--demodulate --r0 0.1", "--sources 1/3 --passes 1:4",
+        "--fit linear --search brute", "--fireflies spread", "--fireflies clamp:2 --demodulate",
+        "--fit linear --fireflies spread --estimator adaptive --r0 0.1 --search brute"}) {
     const psf::film::Image image = work.filter(options);
     const std::vector<psf::Rgb> filtered = image.rgb(), own = image.rgb("unfiltered-input.");
     for (const auto& [x, y] : {std::pair{3, 9}, {20, 29}, {16, 16}}) {
@@ -127,6 +133,67 @@ TEST_CASE("psf explain gives the pixel that psf filter gives, as the sum of its 
       CHECK(is_close(neighbors, double{(*image.find("neighbors.Y"))[pixel]}));
     }
   }
+}
+
+TEST_CASE("Weights, what is kept and what is given add up to c_bar in the figures, too") {
+  const Explained work;
+  std::size_t given = 0, kept = 0, fireflies = 0;
+  double least = 1;
+  for (const char* pixel : {"20,29", "16,16", "7,27", "20,3"}) {
+    const nlohmann::json figures = work.figures(
+        "--fit linear --fireflies spread --block all --search brute --pixel " + std::string(pixel));
+    fireflies += figures.at("fireflies").size();
+    double of_pixel = 0;
+    for (const auto& path : figures.at("paths")) {
+      const auto& of = path.at("neighbors");
+      REQUIRE(!path.at("fit").is_null());
+      double sum = 0, gifts = 0, mean = 0;
+      for (std::size_t k = 0; k < of.at("record").size(); ++k) {
+        const auto c = of.at("contribution")[k][0].get<double>();
+        const auto part = of.at("kept")[k].get<double>(),
+                   weight = of.at("weight")[k][0].get<double>();
+        sum += weight * part * c;
+        gifts += of.at("given")[k].get<double>() * c;
+        if (of.at("averaged")[k]) mean += part * c / path.at("averaged").get<double>();
+        given += of.at("given")[k] > 0 ? 1u : 0u;
+        kept += part < 1 ? 1u : 0u;
+        least = std::min(least, weight * path.at("averaged").get<double>());
+      }
+      CHECK(is_close(sum + gifts, path.at("c_bar")[0].get<double>()));
+      CHECK(is_close(gifts, path.at("given")[0].get<double>()));
+      CHECK(is_close(mean, path.at("fit").at("mean")[0].get<double>()));
+      of_pixel += gifts * path.at("throughput")[0].get<double>() / 4;
+    }
+    CHECK(is_close(of_pixel, figures.at("value").at("given")[0].get<double>()));
+  }
+  CHECK(fireflies > 0);
+  CHECK(given > 0);
+  CHECK(kept > 0);
+  CHECK(least < 0.9);
+}
+
+TEST_CASE("The text tells of fits and fireflies where there are any, and nowhere else") {
+  const Explained work;
+  const std::string mean = work.explain("--pixel 16,16").out;
+  const Outcome both =
+      work.explain("--pixel 16,16 --block all --fit linear --fireflies spread --all");
+  const Outcome dimmed = work.explain("--pixel 16,16 --block all --fireflies clamp:1 --all");
+  CHECK(both.code == 0);
+  for (const char* words : {"\nfit  ", "\nfireflies ", "if mean", "plane   weight", "keeps",
+                            "given", "gives here", "    ridge "}) {
+    INFO(words);
+    CHECK(both.out.find(words) != std::string::npos);
+    CHECK(mean.find(words) == std::string::npos);
+  }
+  CHECK(dimmed.out.find("keeps") != std::string::npos);
+  CHECK(dimmed.out.find("gives here") == std::string::npos);
+  CHECK(dimmed.out.find("if mean") == std::string::npos);
+  std::size_t widest = 0, begin = 0;
+  for (std::size_t end = 0; (end = both.out.find('\n', begin)) != std::string::npos;
+       begin = end + 1) {
+    widest = std::max(widest, end - begin);
+  }
+  CHECK(widest <= 120);
 }
 
 TEST_CASE("psf explain writes the same bytes for any number of threads") {
@@ -181,6 +248,33 @@ TEST_CASE("The point cloud holds every vertex once, its shares are those of the 
   CHECK(own == 4);
   CHECK(averaged > 10);
   CHECK(refused > 10);
+}
+
+TEST_CASE("In the point cloud fireflies have what they keep and what they give") {
+  const Explained work;
+  const nlohmann::json figures = work.figures(
+      "--pixel 16,16 --block all --fit linear --fireflies spread --ply " + work / "a.ply");
+  std::size_t giving = 0, listed = 0;
+  double share = 0, given = 0;
+  for (const Point& point : read_points(work / "a.ply", true)) {
+    share += double{point.share};
+    given += double{point.given};
+    giving += point.kind == 3 ? 1u : 0u;
+    if (point.kind == 3) CHECK(is_close(double{point.share}, double{point.given}));
+    for (const auto& firefly : figures.at("fireflies")) {
+      if (firefly.at("record") != point.record) continue;
+      ++listed;
+      CHECK(is_close(firefly.at("kept").get<double>(), double{point.kept}));
+    }
+  }
+  const auto luminance = [&figures](const char* of) {
+    const auto& c = figures.at("value").at(of);
+    return 0.2126 * c[0].get<double>() + 0.7152 * c[1].get<double>() + 0.0722 * c[2].get<double>();
+  };
+  CHECK(listed == figures.at("fireflies").size());
+  CHECK(giving > 0);
+  CHECK(std::abs(share - 1) < 1e-4);
+  CHECK(std::abs(given - luminance("given") / luminance("filtered")) < 1e-5);
 }
 
 TEST_CASE("Tables have the rows asked for; with --all every path has its vertex") {
@@ -242,6 +336,9 @@ TEST_CASE("Every mistake with psf explain is one line and leaves nothing behind"
       {"--pixel 1,2 --radus 3", 2, "unknown option --radus"},
       {"--pixel 1,2 --json " + work / "nowhere/x.json", 4, "does not exist, create it first"},
       {"--pixel 1,2 --ply " + work / "nowhere/x.ply", 4, "does not exist, create it first"},
+      {"--pixel 1,2 --estimator hash", 2, "only those that average over a ball"},
+      {"--pixel 1,2 --estimator disk --fit linear", 2, "--fit"},
+      {"--pixel 1,2 --estimator hash --fireflies spread", 2, "--fireflies"},
       {"--pixel 1,2", 4, "b.pvb: ", "b.pvb"},
       {"--pixel 1,2 --visibility", 3, "has no channel visibility, which --visibility needs",
        "two.pvb"},

@@ -95,7 +95,8 @@ const std::map<std::string, const char*> kProse = {
      "Lists the pixel's paths, whom they averaged, what each weight refused, and whence its "
      "light came: what each source adds beyond the mean of the pixel's own paths. Where the "
      "difference is more than noise, it names the weight that would have refused the sources "
-     "that make it."},
+     "that make it. With --fit linear it shows the weight of each source, with --fireflies which "
+     "sources are fireflies, what they keep and what they give."},
     {"psf-report",
      "The page needs no network. It has error maps over any two parameters, errors against n, "
      "tables that sort, and a viewer for the pictures; everything works from the keyboard."},

@@ -134,7 +134,7 @@ class Averages {
 }  // namespace
 
 Estimates apply_engine(const MethodInput& input, const EngineSteps& steps) {
-  const auto& [records, given, block, parameters] = input;
+  const auto& [records, given, block, parameters, found] = input;
   Estimates result;
   const auto start = Clock::now();
   Roles roles = find_roles(records, block, parameters, result.statistics);
@@ -155,9 +155,10 @@ Estimates apply_engine(const MethodInput& input, const EngineSteps& steps) {
   if (!parameters.fireflies.keeps()) {
     engine = steps.engine(problem, block, parameters);
     const auto fireflies_start = Clock::now();
-    const Fireflies fireflies(problem, *engine, averages.values(), parameters, block.n);
+    Fireflies fireflies(problem, *engine, averages.values(), parameters, block.n);
     averages.set_apart(fireflies);
     fireflies.add_to(result.statistics);
+    if (found != nullptr) *found = std::move(fireflies);
     seconds_of_fireflies = seconds_since(fireflies_start);
   }
   if (steps.radii != nullptr) {

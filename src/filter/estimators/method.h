@@ -3,10 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "filter/estimate.h"
+#include "filter/fireflies.h"
 #include "filter/problem.h"
 
 namespace psf::filter {
@@ -16,6 +18,8 @@ struct MethodInput {
   std::span<const float> radius;
   const Block& block;
   const Parameters& parameters;  // valid, and the records have the channels
+  std::optional<Fireflies>* fireflies =
+      nullptr;  // where to put those that are found; null: nowhere
 };
 
 // What estimate() returns; radii are in the unit of the input. The result is the same for any
