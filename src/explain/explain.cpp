@@ -199,6 +199,11 @@ void check(const run::Dump& dump, const ExplainRequest& request) {
     refuse(fmt::format("`path`: {} is not among the paths {} to {} of the passes chosen",
                        *request.path, first, last - 1));
   }
+  if (request.parameters.pixels != filter::PixelRule::keep) {
+    refuse(
+        "`pixels`: what pixels around bring to one cannot be explained; give `pixels keep`, which "
+        "explains the pixel that they are taken for");
+  }
   if (request.camera >= dump.cameras().size()) refuse("`camera`: there is no such camera");
   const filter::CameraView& camera = dump.cameras()[request.camera];
   if (request.x < camera.width && request.y < camera.height) return;
