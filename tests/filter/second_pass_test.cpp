@@ -171,7 +171,7 @@ PixelStatistics odd_picture(std::size_t width, std::size_t height, unsigned seed
 }
 
 // Against Naive: the light, a part of its first colour, and the same numbers as no light.
-void check(const PixelStatistics& s) {
+void check_pass(const PixelStatistics& s) {
   const std::size_t size = s.paths.size();
   std::vector<float> part(size), light = s.radiance;
   for (std::size_t k = 0; k < size; ++k) part[k] = 0.25f * s.radiance[k];
@@ -213,8 +213,8 @@ TEST_CASE("The second pass is what naive loops give") {
   for (const auto& [width, height] :
        {std::pair(43u, 37u), {1u, 1u}, {5u, 40u}, {61u, 2u}, {30u, 16u}}) {
     INFO(width << " x " << height);
-    check(picture(width, height, 1));
-    check(odd_picture(width, height, 12));
+    check_pass(picture(width, height, 1));
+    check_pass(odd_picture(width, height, 12));
   }
 }
 
