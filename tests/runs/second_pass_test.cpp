@@ -158,9 +158,10 @@ TEST_CASE(
     "Alpha stays in [0, 1] after the second pass, and fireflies go through it like all light") {
   Passes dump(86);
   for (std::size_t i = 0; i < dump.set_.size(); ++i) {
-    const auto x = static_cast<float>(dump.set_.pixel[i] % 20);
+    const auto x = static_cast<float>(dump.set_.pixel[i] % 20),
+               y = static_cast<float>(dump.set_.pixel[i] / 20);
     dump.set_.flags[i] = 3;
-    dump.set_.position[i].x = 0.01f * x;
+    dump.set_.position[i] = Vec3(0.01f * x, 0.01f * y, 0);
     dump.set_.contribution[i] = Rgb(1, 1, 1) * (i % 13 == 0 ? 200.0f : 1);
     dump.alpha_[i] = std::clamp((x - 5) / 4, 0.0f, 1.0f);
   }
