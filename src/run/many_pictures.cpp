@@ -127,10 +127,10 @@ std::uint32_t ManyPictures::add_group(const Rgb& u, const Rgb& alpha, double* su
   }
   for (std::size_t t = 0; t < kValues; ++t) sum[t] += double{value[t]};
   if (squares == nullptr) return overflows;
-  for (std::size_t k = first; k < first + c_bar.size(); ++k) {
+  for (std::size_t k = 0; k < c_bar.size(); ++k) {
     if ((overflows >> k & 1) != 0) continue;
-    const float* one = value + 3 * k;
-    add_squares(Rgb(u.x + one[0], u.y + one[1], u.z + one[2]), squares + 3 * k);
+    const float* one = value + 3 * (first + k);
+    add_squares(Rgb(u.x + one[0], u.y + one[1], u.z + one[2]), squares + 3 * (first + k));
   }
   return overflows;
 }
@@ -176,6 +176,9 @@ void ManyPictures::regress(std::size_t k, std::vector<Rgb>& picture) const {
       of_radiance[c] = squares[c] + u_squares_[3 * pixel + c];
       values[c * size + pixel] = picture[pixel][static_cast<int>(c)];
     }
+    // Features stay those of all radii, but what is black for lack of paths is nobody's neighbour.
+    statistics.paths[pixel] = static_cast<std::uint64_t>(paths.count);
+    if (paths.count <= 0) statistics.vertices[pixel] = 0;
     PixelFeatures::set_radiance(statistics, pixel, paths.count, radiance, of_radiance);
   }
   std::vector<filter::PixelPlane> planes;

@@ -34,7 +34,8 @@ double brightness(const Rgb& c) {
   return 0.2126 * double{c.x} + 0.7152 * double{c.y} + 0.0722 * double{c.z};
 }
 
-// By the definition of src/filter/README.md, in double, for the terms `material` and `gloss`.
+// By the definition of src/filter/README.md, in double, for the terms `material`, `plane`
+// and `gloss`.
 class Naive {
  public:
   explicit Naive(const EngineCase& c) : c_(c), s_(c.set) {
@@ -76,6 +77,11 @@ class Naive {
     const filter::WeightTerms& terms = c_.parameters.weights;
     if (i == j) return true;
     if (terms.material && s_.material[i] != s_.material[j]) return false;
+    if (terms.plane) {
+      const Triple apart = minus(triple(s_.position[j]), triple(s_.position[i]));
+      const double off = std::abs(inner(apart, triple(s_.normal[i])));
+      if (!(off <= double{*terms.plane} * double{c_.radius[i]})) return false;
+    }
     if (!terms.gloss || s_.roughness[i] == 1) return true;
     const Triple n = minus(triple(s_.normal[i]), triple(s_.normal[j]));
     const Triple o = minus(triple(s_.direction[i]), triple(s_.direction[j]));
@@ -92,10 +98,11 @@ class Naive {
     for (std::size_t k = 0; k < s_.size(); ++k) {
       if (!is_source(k) || !averages(j, k)) continue;
       ++count;
-      roots += std::sqrt(brightness(s_.contribution[k]));
+      roots += std::sqrt(std::max(0.0, brightness(s_.contribution[k])));
     }
     const double ordinary = (roots / double(count)) * (roots / double(count));
     const double y = brightness(s_.contribution[j]);
+    if (y <= 0) return 1;
     const FireflyRule& rule = c_.parameters.fireflies;
     if (rule.kind == FireflyRule::Kind::clamp) return std::min(1.0, rule.limit * ordinary / y);
     return 1 - std::min(1.0, std::max(0.0, std::log(y / (8 * ordinary)) / std::log(4.0)));
@@ -174,6 +181,64 @@ TEST_CASE("Fireflies are spread as their equations say, by every engine") {
         }
       }
     }
+  }
+}
+
+// Compares with Naive, by every engine.
+void check_all_engines(const EngineCase& c) {
+  const Naive naive(c);
+  const std::vector<Triple> expected = naive.c_bar();
+  REQUIRE(naive.fireflies() > 4);
+  double light = 0;
+  for (std::size_t j = 0; j < c.set.size(); ++j) {
+    if (c.set.flags[j] == 3) light += brightness(c.set.contribution[j]);
+  }
+  for (const EngineKind engine : kEngines) {
+    INFO("engine " << int(engine));
+    const Estimates result = c.filtered(engine);
+    CHECK(result.statistics.fireflies == naive.fireflies());
+    CHECK(result.statistics.light == Approx(light).epsilon(1e-5));
+    for (std::size_t i = 0; i < c.set.size(); ++i) {
+      if (result.neighbors[i] == 0) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        REQUIRE(double{result.c_bar[i][int(k)]} ==
+                Approx(expected[i][k]).epsilon(1e-4).margin(1e-4));
+      }
+    }
+  }
+}
+
+TEST_CASE("The kind of a firefly is looked for behind as many dimmer ones as there are") {
+  for (const float r : {0.2f, 0.5f, 0.9f}) {
+    EngineCase c = some_case(700, 31, r, false, false);
+    std::mt19937 random(32);
+    std::uniform_real_distribution<float> unit(0, 1);
+    // Half as many are twice as bright: of those near the brightest, few are of its kind.
+    for (Rgb& one : c.set.contribution) {
+      one = Rgb(1, 1, 1) * (random() % 8 == 0 ? 50 / (0.002f + unit(random)) : 1);
+    }
+    INFO("radius " << r);
+    check_all_engines(c);
+  }
+}
+
+TEST_CASE("Fireflies are off a plane by their radius, not by how far they reach") {
+  for (const float r : {0.2f, 0.5f}) {
+    EngineCase c = some_case(700, 33, r, false, false);
+    c.parameters.weights.plane = 0.45f;
+    INFO("radius " << r);
+    check_all_engines(c);
+  }
+}
+
+TEST_CASE("Contributions below 0 are no fireflies, and as ordinary as black ones") {
+  for (const FireflyRule rule : {kSpread, FireflyRule{FireflyRule::Kind::clamp, 4}}) {
+    EngineCase c = some_case(700, 35, 0.3f, false, false);
+    for (std::size_t j = 0; j < c.set.size(); j += 5) {
+      c.set.contribution[j] = c.set.contribution[j] * (j % 2 == 0 ? -1.0f : 0.0f);
+    }
+    c.parameters.fireflies = rule;
+    check_all_engines(c);
   }
 }
 

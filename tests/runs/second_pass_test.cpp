@@ -42,10 +42,14 @@ class Passes {
                      {"unfiltered.rest", &set_.unfiltered}};
     return written();
   }
+  [[nodiscard]] std::string with_alpha() {
+    options_.alpha = &alpha_;
+    return written();
+  }
   RecordSet set_;
+  std::vector<float> alpha_;
 
  private:
-  std::vector<float> alpha_;
   std::vector<Rgb> key_, rest_;
   DumpOptions options_;
   TempFolder folder_;
@@ -148,6 +152,31 @@ TEST_CASE("Colours, layers of the light and background add up after the second p
     run.layers.alpha = false;
     run.parameters.pixels = filter::PixelRule::regress;
   }
+}
+
+TEST_CASE(
+    "Alpha stays in [0, 1] after the second pass, and fireflies go through it like all light") {
+  Passes dump(86);
+  for (std::size_t i = 0; i < dump.set_.size(); ++i) {
+    const auto x = static_cast<float>(dump.set_.pixel[i] % 20),
+               y = static_cast<float>(dump.set_.pixel[i] / 20);
+    dump.set_.flags[i] = 3;
+    dump.set_.position[i] = Vec3(0.01f * x, 0.01f * y, 0);
+    dump.set_.contribution[i] = Rgb(1, 1, 1) * (i % 13 == 0 ? 200.0f : 1);
+    dump.alpha_[i] = std::clamp((x - 5) / 4, 0.0f, 1.0f);
+  }
+  const std::string path = dump.with_alpha();
+  FilterRequest run = regressed();
+  run.parameters.fireflies.kind = filter::FireflyRule::Kind::spread;
+  const film::Image image = filtered(path, run)[0];
+  const std::vector<float>& alpha = *image.find("A");
+  const auto [least, most] = std::minmax_element(alpha.begin(), alpha.end());
+  CHECK(*least >= 0);
+  CHECK(*most == 1);
+  std::vector<float> fireflies = *image.find("fireflies.R");
+  run.parameters.pixels = filter::PixelRule::keep;
+  const film::Image kept = filtered(path, run)[0];
+  CHECK(fireflies != *kept.find("fireflies.R"));
 }
 
 TEST_CASE("Many radii with a second pass are what separate runs give") {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "core/parallel.h"
 #include "filter/pixels/tile.h"
@@ -20,11 +19,14 @@ using pixels::PaddedImages;
 constexpr double kNoise = 0.016;        // epsilon of [second], for one path a pixel
 constexpr float kAPixelIs = 1 / 64.0f;  // the difference in position that counts as much as 1
 constexpr double kLeastShare = 1e-3, kMostTimes = 1e15;
+constexpr float kLargest = 100;  // of reflectances and normals, so that squares stay finite
 
 // What is usual in a picture.
 struct Scale {
-  double radiance = 0;  // the mean of the logarithms of luminances, as a luminance; 0: black
-  double paths = 0;     // mean number of paths of the pixels that have any
+  // The mean of the logarithms of luminances, as a luminance; 0: black. Pixels far below the median
+  // count as a thousandth of it, which one bright pixel does not move as it does the mean.
+  double radiance = 0;
+  double paths = 0;  // mean number of paths of the pixels that have any
 };
 
 double luminance(const PixelStatistics& s, std::size_t pixel) {
@@ -34,25 +36,32 @@ double luminance(const PixelStatistics& s, std::size_t pixel) {
 }
 
 Scale scale_of(const PixelStatistics& s) {
-  double sum = 0, paths = 0, logarithms = 0;
-  std::size_t pixels = 0;
-  const std::size_t size = s.width * s.height;
-  const auto counts = [&s](std::size_t pixel) {
-    return s.paths[pixel] > 0 && std::isfinite(luminance(s, pixel));
-  };
-  for (std::size_t pixel = 0; pixel < size; ++pixel) {
-    if (!counts(pixel)) continue;
-    sum += std::max(0.0, luminance(s, pixel));
+  std::vector<double> luminances;
+  double paths = 0, logarithms = 0;
+  for (std::size_t pixel = 0; pixel < s.width * s.height; ++pixel) {
+    const double y = luminance(s, pixel);
+    if (s.paths[pixel] == 0 || !std::isfinite(y)) continue;
     paths += static_cast<double>(s.paths[pixel]);
-    ++pixels;
+    luminances.push_back(std::max(0.0, y));
   }
-  if (pixels == 0 || !(sum > 0)) return {};
-  const auto number = static_cast<double>(pixels);
-  const double least = kLeastShare * sum / number;
-  for (std::size_t pixel = 0; pixel < size; ++pixel) {
-    if (counts(pixel)) logarithms += std::log(std::max(luminance(s, pixel), least));
-  }
+  const auto light =
+      std::partition(luminances.begin(), luminances.end(), [](double y) { return y > 0; });
+  if (light == luminances.begin()) return {};
+  const auto middle = luminances.begin() + (light - luminances.begin()) / 2;
+  std::nth_element(luminances.begin(), middle, light);
+  const double least = kLeastShare * *middle;
+  for (const double y : luminances) logarithms += std::log(std::max(y, least));
+  const auto number = static_cast<double>(luminances.size());
   return {std::exp(logarithms / number), paths / number};
+}
+
+// What light is divided by, so that its sums over a window are finite floats: a power of 2, which
+// rounds nothing.
+double unit_of(const Scale& scale) {
+  return std::ldexp(1.0, std::ilogb(scale.radiance));
+}
+double unit_of(const Scale& scale, const PixelPlane& plane) {
+  return plane.colour == PixelPlane::kNoLight ? 1 : unit_of(scale);
 }
 
 // The images of the second pass, from statistics and planes.
@@ -67,9 +76,12 @@ class Input {
     set_radiance(scale);
     set_features();
     // The light itself, then the planes.
-    for (std::size_t c = 0; c < 3; ++c)
-      set_plane(c, std::span(s_.radiance).subspan(c * size_, size_));
-    for (std::size_t p = 0; p < planes.size(); ++p) set_plane(3 + p, planes[p].values);
+    for (std::size_t c = 0; c < 3; ++c) {
+      set_plane(c, std::span(s_.radiance).subspan(c * size_, size_), unit_of(scale));
+    }
+    for (std::size_t p = 0; p < planes.size(); ++p) {
+      set_plane(3 + p, planes[p].values, unit_of(scale, planes[p]));
+    }
   }
 
   [[nodiscard]] const Layout& layout() const { return layout_; }
@@ -121,7 +133,9 @@ class Input {
     std::size_t at = Layout::kFeatures;
     for (const std::vector<float>* of : {&s_.reflectance, &s_.normal}) {
       for (std::size_t c = 0; c < 3; ++c) {
-        set(at++, [&](std::size_t pixel) { return (*of)[c * size_ + pixel]; });
+        set(at++, [&](std::size_t pixel) {
+          return std::clamp((*of)[c * size_ + pixel], -kLargest, kLargest);
+        });
       }
     }
     set(at++, [this](std::size_t pixel) { return s_.vertices[pixel]; });
@@ -160,9 +174,10 @@ class Input {
     return least < kNone ? least : 0;
   }
 
-  void set_plane(std::size_t p, std::span<const float> values) {
+  void set_plane(std::size_t p, std::span<const float> values, double unit) {
     // What counts nowhere may be infinite, and 0 times that is NaN.
-    set(Layout::kPlanes + p, [&](std::size_t pixel) { return counts_[pixel] ? values[pixel] : 0; });
+    set(Layout::kPlanes + p,
+        [&](std::size_t pixel) { return counts_[pixel] ? double{values[pixel]} / unit : 0; });
   }
 
   const PixelStatistics& s_;
@@ -205,7 +220,8 @@ void second_pass(const PixelStatistics& statistics, std::span<const PixelPlane> 
         for (std::size_t p = 0; p < planes.size(); ++p) {
           const std::size_t at = (3 + p) * kRows * kColumns + place;
           const double mean = tile.mean[at], step = steps[planes[p].colour];
-          planes[p].values[y * width + x] = static_cast<float>(mean + step * (tile.fit[at] - mean));
+          planes[p].values[y * width + x] =
+              static_cast<float>(unit_of(scale, planes[p]) * (mean + step * (tile.fit[at] - mean)));
         }
       }
     }

@@ -35,13 +35,13 @@ struct PixelPlane {
 // Replaces the values of each plane by those of the fit. Which pixels count, and how much, is the
 // same for all planes, so parts of the light still add up to the whole; where the fit of
 // `statistics.radiance` is below 0, each part goes the same way back to its weighted mean that
-// brings the whole to 0. The same for any number of threads and any instruction set. Pixels whose
-// radiance or variance is not finite, or above 1e15 times the picture's, stay as they are and count
-// nowhere.
+// brings the whole to 0, but for rounding. The same for any number of threads and any instruction
+// set. Pixels whose radiance or variance is not finite, or above 1e15 times the picture's, stay as
+// they are and count nowhere. Radiances should be between 1e-19 and 1e19, whose squares are floats.
 void second_pass(const PixelStatistics& statistics, std::span<const PixelPlane> planes);
 
 // The bytes a pixel that second_pass() takes for so many planes: an image of each, of the light, and
-// of 19 more, with borders that are a fourth more at 1,000 pixels a side.
+// of 19 more, with borders that are a fourth more at 300 pixels a side, and less in larger pictures.
 [[nodiscard]] constexpr std::uint64_t second_pass_bytes(std::uint64_t planes) {
   return (planes + 22) * sizeof(float) * 5 / 4;
 }

@@ -14,8 +14,8 @@ constexpr float kLikeness = 0.8f;  // k of [second]
 constexpr float kRidge = 1e-3f;
 constexpr float kFarthest = 4;  // features of position are cut off here: 256 pixels away
 
-// Images with a border of copies of their outermost pixels, so that windows and patches need no
-// other case.
+// Images with a border, of copies of their outermost pixels or of 0, so that windows and patches
+// need no other case.
 class PaddedImages {
  public:
   PaddedImages(std::size_t width, std::size_t height, std::size_t images);
@@ -26,7 +26,7 @@ class PaddedImages {
   [[nodiscard]] std::size_t place(std::size_t x, std::size_t y) const {
     return (y + kBorder) * stride_ + x + kBorder;
   }
-  // Copies the outermost pixels of an image into its border, or sets the border to 0.
+  // Copies the outermost pixels of an image into its border, which is 0 until then.
   void extend(std::size_t k);
 
  private:
