@@ -67,17 +67,16 @@ void print_best(const study::Json& json, metrics::Metric metric) {
     return metrics::lower_is_better(metric) ? x < y : x > y;
   });
   const std::vector<std::string> names = varied(rows);
-  fmt::print("{:>4}  {:>10}  {:>10}  ", "row", name, "neighbours");
-  for (const std::string& one : names)
-    fmt::print("{:>{}}  ", one, std::max<std::size_t>(9, one.size()));
+  const auto width_of = [](const std::string& one) { return std::max<std::size_t>(9, one.size()); };
+  fmt::print("{:>4}  {:>10}  {:>10}", "row", name, "neighbours");
+  for (const std::string& one : names) fmt::print("  {:>{}}", one, width_of(one));
   fmt::print("\n");
   for (std::size_t k = 0; k < std::min(kShown, order.size()); ++k) {
     const study::Json& row = rows[order[k]];
-    fmt::print("{:>4}  {:>10.4g}  {:>10.1f}  ", row["id"].get<std::string>(), value_of(row),
+    fmt::print("{:>4}  {:>10.4g}  {:>10.1f}", row["id"].get<std::string>(), value_of(row),
                row["neighbors"].get<double>());
     for (const std::string& one : names) {
-      fmt::print("{:>{}}  ", row["parameters"][one].get<std::string>(),
-                 std::max<std::size_t>(9, one.size()));
+      fmt::print("  {:>{}}", row["parameters"][one].get<std::string>(), width_of(one));
     }
     fmt::print("\n");
   }
