@@ -113,12 +113,12 @@ TEST_CASE("Squares of paths that overflow in one radius of a group are left out 
   constexpr std::size_t kFirst = 3;  // radii 0, 1 and 2 of the group are added by nobody
   const auto none = [](const auto&, std::size_t, std::size_t, const auto&) { return true; };
   const auto one = [](const auto&, std::size_t i, std::size_t first, std::vector<Rgb>& c_bar) {
-    if (i % 9 == 4) c_bar[6 - first].x = tests::kInfinity;
+    if (i % 7 == 4) c_bar[6 - first].x = tests::kInfinity;
     return true;
   };
   // The same paths are in no picture.
   const auto dropped = [](const auto&, std::size_t i, std::size_t, const auto&) {
-    return i % 9 != 4;
+    return i % 7 != 4;
   };
   const ManyPictures all = pictures(kFirst, none), some = pictures(kFirst, one),
                      without = pictures(kFirst, dropped);
