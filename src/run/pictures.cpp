@@ -71,6 +71,28 @@ std::uint64_t keep(const Records& records, const Estimates& estimates,
   return overflows;
 }
 
+// A channel of a picture.
+struct Plane {
+  std::string name;
+  const film::Film* film;
+  std::size_t component;
+  std::optional<std::size_t> colour;  // as which the second pass takes it; not set: it stays
+};
+
+// The second pass over those of the image's first layers, one for each plane, that it is for.
+void regress(const filter::PixelStatistics& statistics, std::span<const Plane> planes,
+             film::Image& image) {
+  std::vector<filter::PixelPlane> regressed;
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    if (planes[k].colour) regressed.push_back({image.layers[k].values, *planes[k].colour});
+  }
+  filter::second_pass(statistics, regressed);
+  for (const filter::PixelPlane& plane : regressed) {
+    if (plane.colour != filter::PixelPlane::kNoLight) continue;  // else it is alpha
+    for (float& value : plane.values) value = std::clamp(value, 0.0f, 1.0f);
+  }
+}
+
 }  // namespace
 
 CameraPictures::CameraPictures(const filter::CameraView& camera, const PictureLayers& layers,
@@ -209,13 +231,6 @@ film::Image CameraPictures::image() const {
     prefixes.push_back(film::kBackground + std::string("."));
     image.attributes.emplace_back(film::kBackgroundIs, film::kApart);
   }
-  struct Plane {
-    std::string channel;
-    const film::Film* film;
-    std::size_t component;
-    // What the second pass makes of it; nothing: it stays.
-    std::optional<std::size_t> colour;
-  };
   std::vector<Plane> planes;
   const auto add = [&](const std::string& prefix, const std::string& suffixes,
                        const film::Film& film, std::size_t first = 0) {
@@ -245,19 +260,9 @@ film::Image CameraPictures::image() const {
   if (layers_.fireflies) add_light("fireflies.", fireflies_, 0);
   image.layers.resize(planes.size());
   core::parallel_for(planes.size(), 1, [&](std::size_t k, std::size_t) {
-    image.layers[k] = {planes[k].channel, planes[k].film->mean(planes[k].component)};
+    image.layers[k] = {planes[k].name, planes[k].film->mean(planes[k].component)};
   });
-  if (!features_.empty()) {
-    std::vector<filter::PixelPlane> regressed;
-    for (std::size_t k = 0; k < planes.size(); ++k) {
-      if (planes[k].colour) regressed.push_back({image.layers[k].values, *planes[k].colour});
-    }
-    filter::second_pass(statistics(), regressed);
-    for (std::size_t k = 0; k < planes.size(); ++k) {
-      if (planes[k].film != &alpha_) continue;
-      for (float& value : image.layers[k].values) value = std::clamp(value, 0.0f, 1.0f);
-    }
-  }
+  if (!features_.empty()) regress(statistics(), planes, image);
   if (has_holes) {
     for (std::size_t part = 0; part < prefixes.size(); ++part) {
       image.add(unfiltered + prefixes[part], "RGB", filled(part));

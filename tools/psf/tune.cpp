@@ -111,6 +111,13 @@ void run(const TuneOptions& options) {
   tune.epsilon = options.epsilon;
   tune.max_memory = options.max_memory;
   check_files({options.input}, {options.common.json});
+  if (std::any_of(sets.begin(), sets.end(), [](const filter::Parameters& set) {
+        return set.pixels != filter::PixelRule::keep;
+      })) {
+    notes.emplace_back(
+        "`pixels`: sets are compared before the second pass, so those that differ in it alone are "
+        "equal");
+  }
   print_notes(notes, options.common.quiet);
   core::Progress progress("tune", options.common.quiet);
   tune.on_progress = [&progress](std::uint64_t done, std::uint64_t total) {
