@@ -29,7 +29,7 @@ struct Scale {
   double paths = 0;  // mean number of paths of the pixels that have any
 };
 
-double luminance(const PixelStatistics& s, std::size_t pixel) {
+double pixel_luminance(const PixelStatistics& s, std::size_t pixel) {
   const std::size_t size = s.width * s.height;
   return 0.2126 * double{s.radiance[pixel]} + 0.7152 * double{s.radiance[size + pixel]} +
          0.0722 * double{s.radiance[2 * size + pixel]};
@@ -39,7 +39,7 @@ Scale scale_of(const PixelStatistics& s) {
   std::vector<double> luminances;
   double paths = 0, logarithms = 0;
   for (std::size_t pixel = 0; pixel < s.width * s.height; ++pixel) {
-    const double y = luminance(s, pixel);
+    const double y = pixel_luminance(s, pixel);
     if (s.paths[pixel] == 0 || !std::isfinite(y)) continue;
     paths += static_cast<double>(s.paths[pixel]);
     luminances.push_back(std::max(0.0, y));
