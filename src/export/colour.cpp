@@ -45,8 +45,8 @@ PointColours::PointColours(const ExportRecords& records, const std::string& name
     if (fits) return;
     const formats::Channel& channel = schema.channels[k];
     throw Error(ErrorCode::bad_input,
-                fmt::format("{}: no colour can be made of the channel {}, {} x {}; give --colour "
-                            "none or one of 1 or 3 floats",
+                fmt::format("{}: no colour can be made of the channel {}, {} x {}; give `colour "
+                            "none` or one of 1 or 3 floats",
                             records.path(), channel.name, formats::name_of(channel.type),
                             channel.components));
   };

@@ -2,37 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <memory>
 #include <numeric>
 #include <utility>
 
 #include "core/interrupt.h"
 #include "core/parallel.h"
-#include "filter/lists.h"
+#include "filter/receivers.h"
 #include "filter/sum.h"
 #include "search/compact_order.h"
-#include "search/search.h"
 
 namespace psf::filter {
 namespace {
 
 // Measured in README.md, "Fireflies".
-constexpr double kOrdinary = 8;     // times m_j: what is brighter begins to be a firefly
-constexpr double kLevel = 4;        // times brighter than that: nothing is kept; its kind is within
-constexpr std::size_t kOfKind = 4;  // R_j reaches so many others of its kind
-constexpr float kFarthest = 4;      // R_j is at most so many r_j
-constexpr float kNearest = 0.5f;    // and at least so many, but for what is dense:
-constexpr float kDense = 2;         // at most so many distances to the last of its kind
-
-constexpr float kHair = 1 + 1e-6f;  // so that the last of its kind is within R_j
-
-constexpr std::size_t kFireflyGrain = 4096, kReachGrain = 64;
-
-// Whether each of two records could have brought what the other did.
-bool alike(const Problem& p, std::uint32_t i, std::uint32_t j) {
-  return p.weights.pass(i, j, p.radius[i]) && p.weights.pass(j, i, p.radius[j]);
-}
+constexpr double kOrdinary = 8;  // times m_j: what is brighter begins to be a firefly
+constexpr double kLevel = 4;     // times brighter than that: nothing is kept
+constexpr std::size_t kFireflyGrain = 4096;
 
 // The mean of the roots of luminance in the ball of every query, which one bright source in it hardly
 // moves.
@@ -90,72 +75,54 @@ void Fireflies::find(const Problem& problem, std::span<const Rgb> values,
 Firefly Fireflies::operator[](std::size_t g) const {
   const std::uint32_t j = records_[g];
   return {j,        luminance_[g],           ordinary_[g],
-          kept_[j], gives() ? reach_[g] : 0, gives() ? inverse_[g] : 0};
+          kept_[j], gives() ? reach_[g] : 0, gives() ? shares_[g] : 0};
 }
 
 void Fireflies::to_world(const Scaled& scaled) {
   for (float& reach : reach_) reach = scaled.to_world(reach);
 }
 
-std::vector<float> Fireflies::reaches(const Problem& problem, EngineKind engine) const {
-  const std::span<const Vec3> x = problem.records.position;
-  std::vector<Vec3> positions;
-  for (const std::uint32_t j : records_) positions.push_back(x[j]);
-  const std::unique_ptr<search::Search> search = search::make_search(search_of(engine), positions);
-  std::vector<float> reach(records_.size());
-  core::parallel_for(reach.size(), kReachGrain, [&](std::size_t begin, std::size_t end) {
-    core::throw_if_interrupted("no picture was written");
-    std::vector<search::Neighbor> nearest;
-    for (std::size_t g = begin; g < end; ++g) {
-      const std::uint32_t j = records_[g];
-      const float r_j = problem.radius[j], farthest = kFarthest * r_j;
-      float last = std::numeric_limits<float>::infinity();
-      for (std::size_t count = 4 * kOfKind;; count *= 4) {
-        search->nearest(x[j], count, nearest);
-        std::size_t found = 0;
-        for (const search::Neighbor& near : nearest) {
-          const bool is_kind =
-              near.index != g && kLevel * double{luminance_[near.index]} >= double{luminance_[g]};
-          if (!is_kind || !alike(problem, j, records_[near.index]) || ++found < kOfKind) continue;
-          last = kHair * std::sqrt(near.d_sq);
-          break;
-        }
-        const bool is_all = nearest.size() < count;
-        if (found == kOfKind || is_all || !(nearest.back().d_sq < farthest * farthest)) break;
-      }
-      reach[g] = std::min(std::max(last, std::min(kNearest * r_j, kDense * last)), farthest);
-    }
-  });
-  return reach;
-}
-
 void Fireflies::find_receivers(const Problem& problem, EngineKind engine) {
-  reach_ = reaches(problem, engine);
-  std::vector<std::vector<std::uint32_t>> receivers(records_.size());
-  inverse_.resize(records_.size());
-  make_lists(engine, problem, records_, reach_)->each([&](std::size_t g, auto near) {
-    const std::uint32_t j = records_[g];
-    receivers[g].push_back(j);
-    std::uint64_t sources = 1;  // N_j: as in a mean, sources stand for the queries around them
-    for (const std::uint32_t i : near) {
-      if (i == j || !alike(problem, i, j)) continue;
-      receivers[g].push_back(i);
-      if (problem.roles.of[i] == Role::source) ++sources;
-    }
-    inverse_[g] = 1 / static_cast<double>(sources);
-  });
+  Receivers found = filter::find_receivers(problem, engine, {records_, luminance_});
+  keep_even(found);
 
-  first_.assign(problem.records.size() + 1, 0);
-  for (const auto& some : receivers) {
+  first_.assign(kept_.size() + 1, 0);
+  for (const auto& some : found.of) {
     for (const std::uint32_t i : some) ++first_[i + 1];
   }
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
   givers_.resize(first_.back());
   std::vector<std::uint64_t> next(first_.begin(), first_.end() - 1);
-  for (std::size_t g = 0; g < receivers.size(); ++g) {
-    for (const std::uint32_t i : receivers[g]) givers_[next[i]++] = static_cast<std::uint32_t>(g);
-    receivers[g] = {};
+  for (std::size_t g = 0; g < found.of.size(); ++g) {
+    for (const std::uint32_t i : found.of[g]) givers_[next[i]++] = static_cast<std::uint32_t>(g);
+    found.of[g] = {};
   }
+  reach_ = std::move(found.reach);
+  shares_ = std::move(found.shares);
+}
+
+void Fireflies::keep_even(Receivers& found) {
+  std::size_t left = 0;
+  for (std::size_t g = 0; g < records_.size(); ++g) {
+    const std::uint32_t j = records_[g];
+    if (found.of[g].empty()) {
+      light_apart_ -= (1 - double{kept_[j]}) * double{luminance_[g]};
+      kept_[j] = 1;
+      continue;
+    }
+    records_[left] = j;
+    luminance_[left] = luminance_[g];
+    ordinary_[left] = ordinary_[g];
+    found.reach[left] = found.reach[g];
+    found.shares[left] = found.shares[g];
+    std::swap(found.of[left++], found.of[g]);
+  }
+  records_.resize(left);
+  luminance_.resize(left);
+  ordinary_.resize(left);
+  found.reach.resize(left);
+  found.shares.resize(left);
+  found.of.resize(left);
 }
 
 void Fireflies::give(std::span<const Rgb> values, std::span<Rgb> out) const {

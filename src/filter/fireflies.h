@@ -9,6 +9,7 @@
 
 #include "core/vec.h"
 #include "filter/problem.h"
+#include "filter/receivers.h"
 #include "filter/scaled.h"
 
 namespace psf::filter {
@@ -53,7 +54,7 @@ class Fireflies {
     if (!gives()) return;
     for (std::uint64_t k = first_[i]; k < first_[i + 1]; ++k) {
       const std::uint32_t j = records_[givers_[k]];
-      visit(j, (1 - double{kept_[j]}) * inverse_[givers_[k]]);
+      visit(j, (1 - double{kept_[j]}) * shares_[givers_[k]]);
     }
   }
 
@@ -62,9 +63,9 @@ class Fireflies {
  private:
   void find(const Problem& problem, std::span<const Rgb> values, std::span<const Rgb> roots,
             const FireflyRule& rule, double n);
-  // R_j of every firefly, in the order of records_.
-  [[nodiscard]] std::vector<float> reaches(const Problem& problem, EngineKind engine) const;
   void find_receivers(const Problem& problem, EngineKind engine);
+  // Leaves out what has no receivers: there the bright are even, and nothing is a firefly.
+  void keep_even(Receivers& found);
 
   std::vector<float> kept_;
   std::vector<std::uint32_t> records_;
@@ -77,7 +78,7 @@ class Fireflies {
   // in records_.
   std::vector<std::uint64_t> first_;
   std::vector<std::uint32_t> givers_;
-  std::vector<double> inverse_;  // 1 / N_j, by place in records_
+  std::vector<double> shares_;  // 1 / N_j, by place in records_
 };
 
 }  // namespace psf::filter

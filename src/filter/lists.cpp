@@ -31,7 +31,10 @@ class PlainLists final : public Lists {
       for (std::size_t k = begin; k < end; ++k) {
         search_->within(p_.records.position[centers_[k]], reach_[k] * reach_[k], found);
         near.clear();
-        for (const search::Neighbor& one : found) near.push_back(p_.roles.queries[one.index]);
+        for (const search::Neighbor& one : found) {
+          const std::uint32_t i = p_.roles.queries[one.index];
+          if (i != centers_[k] && p_.alike(i, centers_[k])) near.push_back(i);
+        }
         visit(k, near);
       }
     });

@@ -13,8 +13,7 @@ namespace psf::filter {
 
 class Lists {
  public:
-  // `near`: record numbers, in any order; it may hold records that a term of the weights refuses, and
-  // may lack the centre itself.
+  // `near`: record numbers, in any order.
   using Visit = std::function<void(std::size_t k, std::span<const std::uint32_t> near)>;
 
   virtual ~Lists() = default;
@@ -22,8 +21,8 @@ class Lists {
   virtual void each(const Visit& visit) const = 0;
 };
 
-// All queries of `problem` with chi(x_i - x_j; reach[k]) = 1 that the weights of the problem do not
-// refuse, where j = centers[k], in a compact order. All arguments are borrowed.
+// All queries i of `problem` with chi(x_i - x_j; reach[k]) = 1 and w_ij = w_ji = 1, but for j itself,
+// where j = centers[k], in a compact order. All arguments are borrowed.
 [[nodiscard]] std::unique_ptr<Lists> make_lists(EngineKind kind, const Problem& problem,
                                                 std::span<const std::uint32_t> centers,
                                                 std::span<const float> reach);

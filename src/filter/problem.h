@@ -23,6 +23,11 @@ struct Problem {
   std::span<const float> area;  // A_j of [disk]; empty: [average]
   // The sources are no queries, and a query without one in its ball gets 0: there are no orphans.
   bool sources_apart = false;
+
+  // w_ij w_ji: whether each of two records could have brought what the other did.
+  [[nodiscard]] bool alike(std::uint32_t i, std::uint32_t j) const {
+    return weights.pass(i, j, radius[i]) && weights.pass(j, i, radius[j]);
+  }
 };
 
 // What is averaged, and where the averages go, both by record number.

@@ -59,14 +59,14 @@ class DumpFilter {
     if (!channels.layers.empty() && rule && rule->kind != VertexRule::Kind::first_rough) {
       throw Error(ErrorCode::bad_input,
                   dump.reader().path() +
-                      ": its layers of the light are those of the renderer's vertex; --layers none "
+                      ": its layers of the light are those of the renderer's vertex; `layers none` "
                       "does without them");
     }
     if (!channels.layers.empty() && channels.photons) {
       throw Error(ErrorCode::bad_input,
                   dump.reader().path() +
                       ": its layers of the light are of paths, and `estimator density` takes "
-                      "photons; --layers none does without them");
+                      "photons; `layers none` does without them");
     }
     if (!run.window.others.empty() && run.window.terms.rest) {
       channels.rest_position =
@@ -84,7 +84,7 @@ class DumpFilter {
       throw Error(ErrorCode::bad_input,
                   fmt::format("{}: has a layer {} of the light and the channel alpha, with which "
                               "pictures have another layer of this name; psf cat --drop alpha "
-                              "leaves that out, --layers one of them",
+                              "leaves that out, `layers` one of them",
                               dump.reader().path(), layer.name));
     }
   }

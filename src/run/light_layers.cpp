@@ -30,7 +30,7 @@ void check_channel(const formats::Reader& reader, const formats::Channel& channe
   }
   if (why.empty()) return;
   refuse_layer(reader,
-               fmt::format("channel {0}: {1}; --layers none does without, and psf cat --drop "
+               fmt::format("channel {0}: {1}; `layers none` does without, and psf cat --drop "
                            "{0} leaves it out",
                            channel.name, why));
 }

@@ -22,7 +22,7 @@ std::size_t last_pass(const Dump& dump, const PassSelection& selection) {
         ErrorCode::usage,
         fmt::format(
             "{}: has the frames {}:{}, and passes {}:{} are of several, which would be mixed; "
-            "choose one by --passes, {} from 0, {}, ... on, or psf filter's --frame",
+            "choose one by `passes`, {} from 0, {}, ... on, or psf filter's `frame`",
             dump.reader().path(), frames->first, frames->first + std::uint64_t{frames->count},
             selection.first, last, frames->passes, frames->passes));
   }
@@ -32,7 +32,7 @@ std::size_t last_pass(const Dump& dump, const PassSelection& selection) {
 PassSelection passes_of_frame(const Dump& dump, std::uint32_t frame) {
   const auto& frames = dump.metadata().frames;
   const std::string& path = dump.reader().path();
-  if (!frames) throw Error(ErrorCode::usage, path + ": tells of no frames; leave out --frame");
+  if (!frames) throw Error(ErrorCode::usage, path + ": tells of no frames; leave out `frame`");
   if (frame < frames->first || frame - frames->first >= frames->count) {
     throw Error(ErrorCode::usage,
                 fmt::format("{}: has the frames {}:{}, {} is none of them", path, frames->first,

@@ -93,7 +93,7 @@ WindowReader::WindowReader(std::uint64_t first_path, const Window& window,
     if (same_layers(channels_.front(), channels_.back())) continue;
     throw Error(ErrorCode::bad_input,
                 frame.dump->reader().path() +
-                    ": has other layers of the light than the frames before it; --layers none does "
+                    ": has other layers of the light than the frames before it; `layers none` does "
                     "without them");
   }
 }

@@ -39,7 +39,12 @@ double brightness(const Rgb& c) {
 class Naive {
  public:
   explicit Naive(const EngineCase& c) : c_(c), s_(c.set) {
-    for (std::size_t j = 0; j < s_.size(); ++j) kept_.push_back(is_source(j) ? kept_of(j) : 1);
+    for (std::size_t j = 0; j < s_.size(); ++j) bright_.push_back(is_source(j) ? kept_of(j) : 1);
+    kept_ = bright_;
+    if (c.parameters.fireflies.kind != FireflyRule::Kind::spread) return;
+    for (std::size_t j = 0; j < s_.size(); ++j) {
+      if (bright_[j] < 1 && is_even(j)) kept_[j] = 1;
+    }
   }
 
   // Mean of what is kept, and gifts.
@@ -62,6 +67,11 @@ class Naive {
     return result;
   }
   [[nodiscard]] double kept(std::size_t j) const { return kept_[j]; }
+  [[nodiscard]] std::size_t even() const { return bright() - fireflies(); }
+  [[nodiscard]] std::size_t bright() const {
+    return static_cast<std::size_t>(
+        std::count_if(bright_.begin(), bright_.end(), [](double kept) { return kept < 1; }));
+  }
   [[nodiscard]] std::size_t fireflies() const {
     return static_cast<std::size_t>(
         std::count_if(kept_.begin(), kept_.end(), [](double kept) { return kept < 1; }));
@@ -108,13 +118,45 @@ class Naive {
     return 1 - std::min(1.0, std::max(0.0, std::log(y / (8 * ordinary)) / std::log(4.0)));
   }
 
+  [[nodiscard]] bool is_kind(std::size_t j, std::size_t k) const {
+    return k != j && bright_[k] < 1 &&
+           4 * brightness(s_.contribution[k]) >= brightness(s_.contribution[j]) && passes(j, k) &&
+           passes(k, j);
+  }
+
+  // Offset and its square of every source around j, in twice its radius, and the means of these over
+  // all and over its kind.
+  [[nodiscard]] bool is_even(std::size_t j) const {
+    const double radius = 2 * double{c_.radius[j]};
+    std::vector<std::array<double, 4>> all, kind;
+    for (std::size_t k = 0; k < s_.size(); ++k) {
+      if (k == j || !is_source(k) || !(distance(j, k) < radius)) continue;
+      if (!passes(j, k) || !passes(k, j)) continue;
+      const Triple d = minus(triple(s_.position[k]), triple(s_.position[j]));
+      all.push_back({d[0] / radius, d[1] / radius, d[2] / radius, inner(d, d) / radius / radius});
+      if (is_kind(j, k)) kind.push_back(all.back());
+    }
+    if (kind.size() < 4) return false;
+    const auto mean = [](const auto& some, std::size_t axis, double from, int power) {
+      double sum = 0;
+      for (const auto& one : some) sum += std::pow(one[axis] - from, power);
+      return sum / double(some.size());
+    };
+    double shift = 0, variance = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double center = mean(all, axis, 0, 1);
+      shift += std::pow(mean(kind, axis, center, 1), 2);
+      variance += mean(all, axis, center, 2);
+    }
+    const double center = mean(all, 3, 0, 1);
+    const double radial = std::pow(mean(kind, 3, center, 1), 2) / mean(all, 3, center, 2);
+    return double(kind.size()) * (shift / (variance / 2) + radial) < 12;
+  }
+
   void give(std::size_t j, std::vector<Triple>& to) const {
     std::vector<double> kind;
     for (std::size_t k = 0; k < s_.size(); ++k) {
-      const bool is_kind = k != j && kept_[k] < 1 &&
-                           4 * brightness(s_.contribution[k]) >= brightness(s_.contribution[j]) &&
-                           passes(j, k) && passes(k, j);
-      if (is_kind) kind.push_back(distance(j, k));
+      if (is_kind(j, k)) kind.push_back(distance(j, k));
     }
     std::sort(kind.begin(), kind.end());
     const double fourth =
@@ -139,17 +181,20 @@ class Naive {
 
   const EngineCase& c_;
   const tests::RecordSet& s_;
-  std::vector<double> kept_;
+  std::vector<double> bright_, kept_;  // what brightness alone leaves to each, and what is left
 };
 
-// One contribution in `rarity` is a firefly, of a brightness between 10 and 10^5.
+// About one contribution in `rarity` is a firefly, of a brightness between 10 and 10^5: most of them
+// on one side, with an edge, and others everywhere.
 EngineCase some_case(std::size_t count, std::uint32_t seed, float r, bool material, bool gloss,
                      std::uint32_t rarity = 25) {
   EngineCase c(count, seed, 0.2);
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> unit(0, 1);
   for (std::size_t j = 0; j < count; ++j) {
-    const float level = random() % rarity == 0 ? std::pow(10.0f, 1 + 4 * unit(random)) : 1;
+    const bool is_beside = c.set.position[j].x < 0.15f;
+    const std::uint32_t once_in = is_beside ? rarity / 8 + 1 : 2 * rarity;
+    const float level = random() % once_in == 0 ? std::pow(10.0f, 1 + 4 * unit(random)) : 1;
     const float red = unit(random);
     c.set.contribution[j] = Rgb(0.5f + red, 1, 1.5f - red) * level;
     // No two fireflies at one place or as far as the reach: rounding must not decide.
@@ -163,12 +208,14 @@ EngineCase some_case(std::size_t count, std::uint32_t seed, float r, bool materi
 }
 
 TEST_CASE("Fireflies are spread as their equations say, by every engine") {
+  std::size_t even = 0;
   for (const float r : {0.2f, 0.35f, 0.9f, 3.0f}) {
     for (const bool material : {false, true}) {
       const EngineCase c = some_case(700, 21, r, material, r < 0.5f);
       const Naive naive(c);
       const std::vector<Triple> expected = naive.c_bar();
       REQUIRE(naive.fireflies() > 4);
+      even += naive.even();
       for (const EngineKind engine : kEngines) {
         INFO("radius " << r << ", material " << material << ", engine " << int(engine));
         const Estimates result = c.filtered(engine);
@@ -182,6 +229,7 @@ TEST_CASE("Fireflies are spread as their equations say, by every engine") {
       }
     }
   }
+  CHECK(even > 20);
 }
 
 // Compares with Naive, by every engine.
@@ -214,8 +262,10 @@ TEST_CASE("The kind of a firefly is looked for behind as many dimmer ones as the
     std::mt19937 random(32);
     std::uniform_real_distribution<float> unit(0, 1);
     // Half as many are twice as bright: of those near the brightest, few are of its kind.
-    for (Rgb& one : c.set.contribution) {
-      one = Rgb(1, 1, 1) * (random() % 8 == 0 ? 50 / (0.002f + unit(random)) : 1);
+    for (std::size_t j = 0; j < c.set.size(); ++j) {
+      const std::uint32_t once_in = c.set.position[j].x < 0.15f ? 3 : 20;
+      const bool is_bright = random() % once_in == 0;
+      c.set.contribution[j] = Rgb(1, 1, 1) * (is_bright ? 50 / (0.002f + unit(random)) : 1);
     }
     INFO("radius " << r);
     check_all_engines(c);
@@ -229,6 +279,22 @@ TEST_CASE("Fireflies are off a plane by their radius, not by how far they reach"
     INFO("radius " << r);
     check_all_engines(c);
   }
+}
+
+TEST_CASE("Bright contributions that lie as evenly as all others are averaged with them") {
+  EngineCase c = some_case(700, 37, 0.4f, false, false);
+  std::mt19937 random(38);
+  for (Rgb& one : c.set.contribution) one = Rgb(1, 1, 1) * (random() % 20 == 0 ? 1000.0f : 1.0f);
+  const Naive naive(c);
+  REQUIRE(naive.bright() > 20);
+  c.parameters.fireflies = {};
+  const Estimates mean = c.filtered(EngineKind::flann);
+  c.parameters.fireflies = kSpread;
+  const Estimates spread = c.filtered(EngineKind::flann);
+  CHECK(spread.statistics.fireflies * 10 < naive.bright());
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < c.set.size(); ++i) same += mean.c_bar[i] == spread.c_bar[i] ? 1u : 0u;
+  CHECK(same * 10 > 9 * c.set.size());
 }
 
 TEST_CASE("Contributions below 0 are no fireflies, and as ordinary as black ones") {

@@ -104,8 +104,9 @@ class Naive {
           const bool first = s_.paths[a] > 0, second = s_.paths[b] > 0;
           const std::size_t at = c * s_.paths.size();
           const long double d = (first ? radiance(c, a) : 0) - (second ? radiance(c, b) : 0);
-          const long double v = (first ? static_cast<long double>(s_.variance[at + a]) : 0) +
-                                (second ? static_cast<long double>(s_.variance[at + b]) : 0);
+          const long double own = first ? static_cast<long double>(s_.variance[at + a]) : 0;
+          const long double other = second ? static_cast<long double>(s_.variance[at + b]) : 0;
+          const long double v = own + std::min(other, 100 * own);
           sum += (d * d - v) / (noise_ + 0.64L * v) / 27;
         }
       }

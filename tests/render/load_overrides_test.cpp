@@ -70,11 +70,11 @@ TEST_CASE("senseless values of the command line are errors of usage", "[load][ov
   SceneOverrides o;
   o.fov = 180.0f;
   CHECK(failure(o).code == ErrorCode::usage);
-  CHECK(failure(o).message == "--fov 180: expected degrees between 0 and 180");
+  CHECK(failure(o).message == "`fov 180`: expected degrees between 0 and 180");
   o = {};
   o.size = Vec2(0, 10);
   CHECK(failure(o).code == ErrorCode::usage);
-  CHECK(failure(o).message == "--size 0x10: expected whole numbers of pixels from 1 to 65535");
+  CHECK(failure(o).message == "`size 0x10`: expected whole numbers of pixels from 1 to 65535");
   o = {};
   o.size = Vec2(65536, 10);
   CHECK(failure(o).code == ErrorCode::usage);

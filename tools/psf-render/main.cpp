@@ -42,7 +42,7 @@ void run(RenderOptions& options) {
   job.other_outputs = {options.common.json};
   job.settings.quiet = options.common.quiet;
   if (!options.common.quiet) {
-    job.on_note = [](const std::string& note) { core::say("note: " + note); };
+    job.on_note = [](const std::string& note) { core::say("note: " + as_options(note)); };
   }
   const render::JobResult result = render::run_job(job);
   print(job, result, options.common.quiet);

@@ -1,5 +1,6 @@
 #include "filter/engine/near.h"
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -21,7 +22,8 @@ class TreeLists final : public Lists {
  public:
   TreeLists(const Problem& problem, std::span<const std::uint32_t> centers,
             std::span<const float> reach)
-      : roles_{{}, {centers.begin(), centers.end()}, problem.roles.queries},
+      : p_(problem),
+        roles_{{}, {centers.begin(), centers.end()}, problem.roles.queries},
         reach_(reach),
         radius_(problem.records.size(), 0.0f),
         weights_(problem.records, without_plane(problem.weights.terms())),
@@ -47,14 +49,28 @@ class TreeLists final : public Lists {
         for (auto& of_lane : places) of_lane.clear();
         list_found(tree, found, places);
         for (std::size_t lane = 0; lane < centers.size(); ++lane) {
-          for (std::uint32_t& place : places[lane]) place = tree.order()[place];
-          visit(place_[centers[lane]], places[lane]);
+          std::vector<std::uint32_t>& near = places[lane];
+          for (std::uint32_t& place : near) place = tree.order()[place];
+          near.resize(alike_only(near, centers[lane]));
+          visit(place_[centers[lane]], near);
         }
       });
     });
   }
 
  private:
+  // Moves what is alike to the front of `near`, and returns how many these are. The walk has left
+  // w_ij = 1 for the centre i, which is w_ji = 1 for terms that are the same both ways.
+  [[nodiscard]] std::size_t alike_only(std::span<std::uint32_t> near, std::uint32_t center) const {
+    const WeightTerms& terms = p_.weights.terms();
+    const bool is_both_ways = !terms.plane && !terms.gloss;
+    const auto end = std::remove_if(near.begin(), near.end(), [&](std::uint32_t i) {
+      return i == center || !(is_both_ways || p_.alike(i, center));
+    });
+    return static_cast<std::size_t>(end - near.begin());
+  }
+
+  const Problem& p_;
   Roles roles_;  // the queries of the walk are the centres, its sources the problem's queries
   std::span<const float> reach_;
   std::vector<float> radius_;  // by record number

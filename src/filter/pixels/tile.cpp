@@ -66,7 +66,9 @@ class Weights {
       const float* radiance = images_.image(Layout::kRadiance + c);
       const float* variance = images_.image(Layout::kVariance + c);
       const V d = hn::Sub(hn::LoadU(kD, radiance + at), hn::LoadU(kD, radiance + moved(at, to)));
-      const V v = hn::Add(hn::LoadU(kD, variance + at), hn::LoadU(kD, variance + moved(at, to)));
+      const V own = hn::LoadU(kD, variance + at);
+      const V most = hn::Mul(hn::Set(kD, kMostNoise), own);
+      const V v = hn::Add(own, hn::Min(hn::LoadU(kD, variance + moved(at, to)), most));
       sum = hn::Add(sum, hn::Div(hn::Sub(hn::Mul(d, d), v), hn::Add(noise_, hn::Mul(k2, v))));
     }
     return sum;

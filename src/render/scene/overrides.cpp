@@ -38,7 +38,7 @@ void override_lights(const SceneOverrides& o, Scene& scene) {
   if (o.sky || o.sky_map) {
     scene.environment = Environment{};
     scene.environment.radiance = o.sky.value_or(Rgb(1));
-    check_radiance(scene.environment.radiance, "--sky");
+    check_radiance(scene.environment.radiance, "`sky`");
   }
   if (o.sky_map) {
     scene.textures.push_back(Texture::load(*o.sky_map, TextureUse::radiance, scene.warnings));
@@ -51,10 +51,10 @@ void override_lights(const SceneOverrides& o, Scene& scene) {
     Light sun;
     sun.name = "sun";
     sun.kind = LightKind::directional;
-    sun.direction = -unit(o.sun_direction.value_or(Vec3(0.4f, 1.0f, 0.3f)), "--sun");
+    sun.direction = -unit(o.sun_direction.value_or(Vec3(0.4f, 1.0f, 0.3f)), "`sun`");
     sun.intensity = o.sun.value_or(Rgb(3));
     sun.angle = o.sun_angle;
-    check_radiance(sun.intensity, "--sun");
+    check_radiance(sun.intensity, "`sun`");
     scene.lights.push_back(std::move(sun));
   }
 }
@@ -160,15 +160,15 @@ void override_cameras(const SceneOverrides& o, Scene& scene) {
     Camera& camera = scene.cameras[0];
     if (o.eye) camera.eye = scene.space.local(*o.eye);
     if (o.target) camera.target = scene.space.local(*o.target);
-    if (o.up) camera.up = unit(*o.up, "--up");
+    if (o.up) camera.up = unit(*o.up, "`up`");
   }
   if (o.fov && !(*o.fov > 0 && *o.fov < 180)) {
-    misuse(fmt::format("--fov {}: expected degrees between 0 and 180", *o.fov));
+    misuse(fmt::format("`fov {}`: expected degrees between 0 and 180", *o.fov));
   }
   if (o.size) {
     for (const float side : {o.size->x, o.size->y}) {
       if (!(side >= 1 && side <= kMaxSide) || side != std::floor(side)) {
-        misuse(fmt::format("--size {}x{}: expected whole numbers of pixels from 1 to {}", o.size->x,
+        misuse(fmt::format("`size {}x{}`: expected whole numbers of pixels from 1 to {}", o.size->x,
                            o.size->y, kMaxSide));
       }
     }
@@ -197,7 +197,7 @@ void apply_overrides(const SceneOverrides& overrides, Scene& scene) {
   note_environment(scene);
   if (!has_light(scene)) {
     scene.warnings.push_back(scene.name +
-                             ": nothing in the scene gives light; --sky and --sun add some");
+                             ": nothing in the scene gives light; `sky` and `sun` add some");
   }
 }
 

@@ -48,7 +48,7 @@ constexpr Extension kExtensions[] = {
     {"KHR_xmp_json_ld", Support::no_loss, "metadata"},
 
     {"EXT_lights_ies", Support::left_out, "lights with a profile"},
-    {"EXT_lights_image_based", Support::left_out, "an environment; --sky takes a picture"},
+    {"EXT_lights_image_based", Support::left_out, "an environment; `sky` takes a picture"},
     {"EXT_meshopt_compression", Support::left_out, "compressed geometry"},
     {"KHR_draco_mesh_compression", Support::left_out, "compressed geometry"},
     {"KHR_gaussian_splatting", Support::left_out, "splats"},
