@@ -32,7 +32,7 @@ BlockExplainer::BlockExplainer(const filter::Records& records, const filter::Blo
   filter::radii(parameters.radius, records, block, given);
   estimates_ = filter::estimate(records, given, block, parameters, &fireflies_);
   for (const filter::Fireflies& some : fireflies_) {
-    for (std::size_t g = 0; g < some.records().size(); ++g) every_firefly_.push_back(some[g]);
+    every_firefly_.insert(every_firefly_.end(), some.all().begin(), some.all().end());
   }
   std::sort(every_firefly_.begin(), every_firefly_.end(),
             [](const auto& a, const auto& b) { return a.record < b.record; });

@@ -46,83 +46,46 @@ double kept_of(double y, double ordinary, const FireflyRule& rule, double n) {
 }  // namespace
 
 Fireflies::Fireflies(const Problem& problem, Engine& engine, std::span<const Rgb> values,
-                     const Parameters& parameters, double n)
-    : kept_(values.size(), 1.0f) {
+                     const Parameters& parameters, double n) {
   find(problem, values, mean_roots(problem, engine, values), parameters.fireflies, n);
-  if (parameters.fireflies.spreads() && !records_.empty()) {
-    find_receivers(problem, parameters.engine);
+  if (parameters.fireflies.spreads() && !all_.empty()) {
+    turn_round(find_receivers(problem, parameters.engine, all_), values.size());
   }
 }
 
 void Fireflies::find(const Problem& problem, std::span<const Rgb> values,
                      std::span<const Rgb> roots, const FireflyRule& rule, double n) {
+  const auto bright = [&](std::uint32_t j) {
+    const float y = luminance(values[j]);
+    const double ordinary = double{roots[j].x} * double{roots[j].x};
+    return Firefly{j, y, ordinary, static_cast<float>(kept_of(double{y}, ordinary, rule, n))};
+  };
+  std::vector<std::uint32_t> records;
   for (const std::uint32_t j : problem.roles.sources) {
-    const double y = double{luminance(values[j])}, root = double{roots[j].x};
-    light_ += y;
-    const auto kept = static_cast<float>(kept_of(y, root * root, rule, n));
-    if (kept == 1) continue;
-    kept_[j] = kept;
-    light_apart_ += (1 - double{kept}) * y;
-    records_.push_back(j);
+    light_ += double{luminance(values[j])};
+    if (bright(j).kept != 1) records.push_back(j);
   }
-  records_ = search::compact_order(problem.records.position, records_);
-  for (const std::uint32_t j : records_) {
-    luminance_.push_back(luminance(values[j]));
-    ordinary_.push_back(double{roots[j].x} * double{roots[j].x});
+  for (const std::uint32_t j : search::compact_order(problem.records.position, records)) {
+    all_.push_back(bright(j));
   }
-}
-
-Firefly Fireflies::operator[](std::size_t g) const {
-  const std::uint32_t j = records_[g];
-  return {j,        luminance_[g],           ordinary_[g],
-          kept_[j], gives() ? reach_[g] : 0, gives() ? shares_[g] : 0};
 }
 
 void Fireflies::to_world(const Scaled& scaled) {
-  for (float& reach : reach_) reach = scaled.to_world(reach);
+  for (Firefly& firefly : all_) firefly.reach = scaled.to_world(firefly.reach);
 }
 
-void Fireflies::find_receivers(const Problem& problem, EngineKind engine) {
-  Receivers found = filter::find_receivers(problem, engine, {records_, luminance_});
-  keep_even(found);
-
-  first_.assign(kept_.size() + 1, 0);
-  for (const auto& some : found.of) {
+void Fireflies::turn_round(std::vector<std::vector<std::uint32_t>> receivers, std::size_t records) {
+  first_.assign(records + 1, 0);
+  for (const auto& some : receivers) {
     for (const std::uint32_t i : some) ++first_[i + 1];
   }
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
   givers_.resize(first_.back());
   std::vector<std::uint64_t> next(first_.begin(), first_.end() - 1);
-  for (std::size_t g = 0; g < found.of.size(); ++g) {
-    for (const std::uint32_t i : found.of[g]) givers_[next[i]++] = static_cast<std::uint32_t>(g);
-    found.of[g] = {};
+  for (std::size_t g = 0; g < receivers.size(); ++g) {
+    for (const std::uint32_t i : receivers[g]) givers_[next[i]++] = static_cast<std::uint32_t>(g);
+    receivers[g] = {};
   }
-  reach_ = std::move(found.reach);
-  shares_ = std::move(found.shares);
-}
-
-void Fireflies::keep_even(Receivers& found) {
-  std::size_t left = 0;
-  for (std::size_t g = 0; g < records_.size(); ++g) {
-    const std::uint32_t j = records_[g];
-    if (found.of[g].empty()) {
-      light_apart_ -= (1 - double{kept_[j]}) * double{luminance_[g]};
-      kept_[j] = 1;
-      continue;
-    }
-    records_[left] = j;
-    luminance_[left] = luminance_[g];
-    ordinary_[left] = ordinary_[g];
-    found.reach[left] = found.reach[g];
-    found.shares[left] = found.shares[g];
-    std::swap(found.of[left++], found.of[g]);
-  }
-  records_.resize(left);
-  luminance_.resize(left);
-  ordinary_.resize(left);
-  found.reach.resize(left);
-  found.shares.resize(left);
-  found.of.resize(left);
 }
 
 void Fireflies::give(std::span<const Rgb> values, std::span<Rgb> out) const {
@@ -137,9 +100,11 @@ void Fireflies::give(std::span<const Rgb> values, std::span<Rgb> out) const {
 }
 
 void Fireflies::add_to(Statistics& statistics) const {
-  statistics.fireflies += records_.size();
+  statistics.fireflies += all_.size();
   statistics.light += light_;
-  statistics.light_apart += light_apart_;
+  for (const Firefly& firefly : all_) {
+    statistics.light_apart += (1 - double{firefly.kept}) * double{firefly.luminance};
+  }
 }
 
 }  // namespace psf::filter

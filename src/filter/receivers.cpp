@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "core/interrupt.h"
 #include "core/parallel.h"
@@ -45,31 +46,33 @@ float reach_of(float fourth_sq, float r_j) {
 
 class Finder {
  public:
-  Finder(const Problem& problem, EngineKind engine, const Bright& bright, Receivers& receivers)
+  Finder(const Problem& problem, EngineKind engine, std::vector<Firefly>& bright)
       : p_(problem),
         engine_(engine),
         bright_(bright),
-        receivers_(receivers),
+        receivers_(bright.size()),
         luminance_(problem.records.size(), kOrdinary) {
-    for (std::size_t g = 0; g < bright.records.size(); ++g) {
-      luminance_[bright.records[g]] = bright.luminance[g];
-    }
+    for (const Firefly& one : bright) luminance_[one.record] = one.luminance;
   }
 
   // Those that have enough of their kind within kEvenRadius r_j. Returns the places of the others.
   [[nodiscard]] std::vector<std::uint32_t> find_dense() {
+    std::vector<std::uint32_t> centers;
     std::vector<float> around;
-    for (const std::uint32_t j : bright_.records) around.push_back(kEvenRadius * p_.radius[j]);
-    std::vector<std::uint8_t> is_sparse(bright_.records.size());
-    make_lists(engine_, p_, bright_.records, around)->each([&](std::size_t g, auto near) {
-      const std::uint32_t j = bright_.records[g];
+    for (const Firefly& one : bright_) {
+      centers.push_back(one.record);
+      around.push_back(kEvenRadius * p_.radius[one.record]);
+    }
+    std::vector<std::uint8_t> is_sparse(bright_.size());
+    make_lists(engine_, p_, centers, around)->each([&](std::size_t g, auto near) {
+      const std::uint32_t j = centers[g];
       std::vector<float> kind;
       for (const std::uint32_t i : near) {
         if (is_of_kind(luminance_[i], luminance_[j])) kind.push_back(distance_sq(i, j));
       }
       is_sparse[g] = kind.size() < kOfKind ? 1 : 0;
       if (is_sparse[g] != 0 || is_even(j, around[g], near)) return;
-      receivers_.reach[g] = reach_of(fourth(kind), p_.radius[j]);
+      bright_[g].reach = reach_of(fourth(kind), p_.radius[j]);
       take(g, near);
     });
     std::vector<std::uint32_t> places;
@@ -84,12 +87,25 @@ class Finder {
     std::vector<std::uint32_t> centers;
     std::vector<float> reach;
     for (const std::uint32_t g : places) {
-      centers.push_back(bright_.records[g]);
-      reach.push_back(receivers_.reach[g]);
+      centers.push_back(bright_[g].record);
+      reach.push_back(bright_[g].reach);
     }
     make_lists(engine_, p_, centers, reach)->each([&](std::size_t k, auto near) {
       take(places[k], near);
     });
+  }
+
+  // Of all but those that have none, which it leaves out.
+  [[nodiscard]] std::vector<std::vector<std::uint32_t>> receivers() && {
+    std::size_t left = 0;
+    for (std::size_t g = 0; g < bright_.size(); ++g) {
+      if (receivers_[g].empty()) continue;
+      bright_[left] = bright_[g];
+      std::swap(receivers_[left++], receivers_[g]);
+    }
+    bright_.resize(left);
+    receivers_.resize(left);
+    return std::move(receivers_);
   }
 
  private:
@@ -113,7 +129,7 @@ class Finder {
   // R_j where it is not known yet.
   void find_reaches(std::span<const std::uint32_t> places) {
     std::vector<Vec3> positions;
-    for (const std::uint32_t j : bright_.records) positions.push_back(p_.records.position[j]);
+    for (const Firefly& one : bright_) positions.push_back(p_.records.position[one.record]);
     const std::unique_ptr<search::Search> search =
         search::make_search(search_of(engine_), positions);
     core::parallel_for(places.size(), kReachGrain, [&](std::size_t begin, std::size_t end) {
@@ -121,25 +137,25 @@ class Finder {
       std::vector<search::Neighbor> found;
       std::vector<float> kind;
       for (std::size_t k = begin; k < end; ++k) {
-        const std::uint32_t g = places[k], j = bright_.records[g];
+        const std::uint32_t g = places[k], j = bright_[g].record;
         const float farthest = kFarthest * p_.radius[j];
         search->within(p_.records.position[j], farthest * farthest, found);
         kind.clear();
         for (const search::Neighbor& near : found) {
-          const std::uint32_t i = bright_.records[near.index];
+          const std::uint32_t i = bright_[near.index].record;
           if (i == j || !is_of_kind(luminance_[i], luminance_[j]) || !p_.alike(i, j)) continue;
           kind.push_back(near.d_sq);
         }
-        receivers_.reach[g] = reach_of(fourth(kind), p_.radius[j]);
+        bright_[g].reach = reach_of(fourth(kind), p_.radius[j]);
       }
     });
   }
 
   // `near`: what is alike around the bright one at place g, as far as R_j or farther.
   void take(std::size_t g, std::span<const std::uint32_t> near) {
-    const std::uint32_t j = bright_.records[g];
-    const float reach = receivers_.reach[g];
-    std::vector<std::uint32_t>& of = receivers_.of[g];
+    const std::uint32_t j = bright_[g].record;
+    const float reach = bright_[g].reach;
+    std::vector<std::uint32_t>& of = receivers_[g];
     of.push_back(j);
     std::uint64_t sources = 1;  // N_j: as in a mean, sources stand for the queries around them
     for (const std::uint32_t i : near) {
@@ -147,25 +163,23 @@ class Finder {
       of.push_back(i);
       if (p_.roles.of[i] == Role::source) ++sources;
     }
-    receivers_.shares[g] = 1 / static_cast<double>(sources);
+    bright_[g].per_source = 1 / static_cast<double>(sources);
   }
 
   const Problem& p_;
   EngineKind engine_;
-  Bright bright_;
-  Receivers& receivers_;
+  std::vector<Firefly>& bright_;
+  std::vector<std::vector<std::uint32_t>> receivers_;
   std::vector<float> luminance_;  // by record number, of those that are bright
 };
 
 }  // namespace
 
-Receivers find_receivers(const Problem& problem, EngineKind engine, const Bright& bright) {
-  const std::size_t count = bright.records.size();
-  Receivers receivers{std::vector<std::vector<std::uint32_t>>(count), std::vector<float>(count),
-                      std::vector<double>(count)};
-  Finder finder(problem, engine, bright, receivers);
+std::vector<std::vector<std::uint32_t>> find_receivers(const Problem& problem, EngineKind engine,
+                                                       std::vector<Firefly>& bright) {
+  Finder finder(problem, engine, bright);
   finder.find_sparse(finder.find_dense());
-  return receivers;
+  return std::move(finder).receivers();
 }
 
 }  // namespace psf::filter

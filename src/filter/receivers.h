@@ -2,30 +2,27 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "filter/problem.h"
 
 namespace psf::filter {
 
-// What is bright, in a compact order.
-struct Bright {
-  std::span<const std::uint32_t> records;  // record numbers
-  std::span<const float> luminance;        // of each
+// A firefly j.
+struct Firefly {
+  std::uint32_t record = 0;
+  float luminance = 0;    // Y_j
+  double ordinary = 0;    // m_j
+  float kept = 1;         // p_j, in [0, 1)
+  float reach = 0;        // R_j; 0 where nothing is given
+  double per_source = 0;  // 1 / N_j; 0 where nothing is given
 };
 
-// By place in Bright.
-struct Receivers {
-  // Record numbers of those that get a share, the firefly among them; empty where the bright are even
-  // around it, so that it is none.
-  std::vector<std::vector<std::uint32_t>> of;
-  std::vector<float> reach;    // R_j; 0 where there are no receivers
-  std::vector<double> shares;  // 1 / N_j; so too
-};
-
-// Throws Error{interrupted} on ^C.
-[[nodiscard]] Receivers find_receivers(const Problem& problem, EngineKind engine,
-                                       const Bright& bright);
+// `bright`: what brightness alone makes fireflies, in a compact order. Leaves out those around which
+// the bright are even, sets the reach and share of the others, and returns for each of these the
+// record numbers of those it gives to, itself among them. Throws Error{interrupted} on ^C.
+[[nodiscard]] std::vector<std::vector<std::uint32_t>> find_receivers(const Problem& problem,
+                                                                     EngineKind engine,
+                                                                     std::vector<Firefly>& bright);
 
 }  // namespace psf::filter

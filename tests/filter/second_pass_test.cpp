@@ -155,8 +155,8 @@ class Naive {
   long double noise_ = 0;
 };
 
-// With light below 0 in the last rows, black pixels, places far from those around them, and places
-// that are one.
+// With light below 0 in the last rows, black pixels, places far from those around them, places that
+// are one, and pixels whose noise is up to a thousand times that of others.
 PixelStatistics odd_picture(std::size_t width, std::size_t height, unsigned seed) {
   PixelStatistics s = picture(width, height, seed);
   const std::size_t size = width * height;
@@ -165,6 +165,7 @@ PixelStatistics odd_picture(std::size_t width, std::size_t height, unsigned seed
     for (std::size_t at = k; at < 3 * size; at += size) {
       if (k % 29 == 7) s.position[at] = s.position[at - 1];
       if (k / width >= height - height / 3) s.radiance[at] -= 4;
+      if (k % 7 == 3) s.variance[at] *= static_cast<float>(k % 1000);
       if (k % 41 == 8) s.radiance[at] = s.variance[at] = 0;
     }
   }

@@ -62,7 +62,7 @@ class Averages {
         fireflies.give(all, part.gifts);
       }
       if (part.given.empty()) part.given.assign(all.begin(), all.end());
-      for (const std::uint32_t j : fireflies.records()) part.given[j] *= fireflies.kept()[j];
+      for (const Firefly& one : fireflies.all()) part.given[one.record] *= one.kept;
     }
   }
   // The values that are averaged of c.
