@@ -47,7 +47,7 @@ std::uint64_t memory_per_record(const Parameters& parameters) {
   if (parameters.demodulate || parameters.iterations > 1) bytes += kVector;  // values to average
   if (parameters.fit == BallFit::linear) bytes += kVector + 2 * kWord;       // normals, luminances
   if (!parameters.fireflies.keeps()) {
-    bytes += 2 * kVector + kWord;  // values without what is apart, that, and what is kept
+    bytes += 2 * kVector + kWord;  // values without what is apart, that, and how bright it is
   }
   if (parameters.fireflies.spreads()) {
     constexpr std::uint64_t kPlaces = 5 * kWord, kEnds = 16;

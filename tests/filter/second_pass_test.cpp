@@ -106,8 +106,8 @@ class Naive {
           const long double d = (first ? radiance(c, a) : 0) - (second ? radiance(c, b) : 0);
           const long double own = first ? static_cast<long double>(s_.variance[at + a]) : 0;
           const long double other = second ? static_cast<long double>(s_.variance[at + b]) : 0;
-          const long double v = own + std::min(other, 100 * own);
-          sum += (d * d - v) / (noise_ + 0.64L * v) / 27;
+          const long double most = own + std::min(other, 10'000 * own);
+          sum += (d * d - own - std::min(other, own)) / (noise_ + 0.64L * most) / 27;
         }
       }
     }
@@ -156,7 +156,7 @@ class Naive {
 };
 
 // With light below 0 in the last rows, black pixels, places far from those around them, places that
-// are one, and pixels whose noise is up to a thousand times that of others.
+// are one, and pixels whose noise is up to a million times that of others.
 PixelStatistics odd_picture(std::size_t width, std::size_t height, unsigned seed) {
   PixelStatistics s = picture(width, height, seed);
   const std::size_t size = width * height;
@@ -165,7 +165,7 @@ PixelStatistics odd_picture(std::size_t width, std::size_t height, unsigned seed
     for (std::size_t at = k; at < 3 * size; at += size) {
       if (k % 29 == 7) s.position[at] = s.position[at - 1];
       if (k / width >= height - height / 3) s.radiance[at] -= 4;
-      if (k % 7 == 3) s.variance[at] *= static_cast<float>(k % 1000);
+      if (k % 7 == 3) s.variance[at] *= static_cast<float>(k * k);
       if (k % 41 == 8) s.radiance[at] = s.variance[at] = 0;
     }
   }

@@ -66,10 +66,11 @@ class Weights {
       const float* radiance = images_.image(Layout::kRadiance + c);
       const float* variance = images_.image(Layout::kVariance + c);
       const V d = hn::Sub(hn::LoadU(kD, radiance + at), hn::LoadU(kD, radiance + moved(at, to)));
-      const V own = hn::LoadU(kD, variance + at);
-      const V most = hn::Mul(hn::Set(kD, kMostNoise), own);
-      const V v = hn::Add(own, hn::Min(hn::LoadU(kD, variance + moved(at, to)), most));
-      sum = hn::Add(sum, hn::Div(hn::Sub(hn::Mul(d, d), v), hn::Add(noise_, hn::Mul(k2, v))));
+      const V own = hn::LoadU(kD, variance + at), other = hn::LoadU(kD, variance + moved(at, to));
+      const V noise = hn::Add(own, hn::Min(other, own));
+      const V most = hn::Add(own, hn::Min(other, hn::Mul(hn::Set(kD, kMostNoise), own)));
+      const V excess = hn::Sub(hn::Mul(d, d), noise);
+      sum = hn::Add(sum, hn::Div(excess, hn::Add(noise_, hn::Mul(k2, most))));
     }
     return sum;
   }

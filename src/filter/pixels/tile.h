@@ -10,8 +10,8 @@ constexpr std::size_t kReach = 6;  // pixels: the window is 13 x 13
 constexpr std::size_t kPatch = 1;  // and a patch 3 x 3
 // Two columns of a tile's vectors are those of patches beside it.
 constexpr std::size_t kVectors = 32, kColumns = kVectors - 2 * kPatch, kRows = 16;
-constexpr float kLikeness = 0.8f;  // k of [second]
-constexpr float kMostNoise = 100;  // times V_p: V_q counts for no more
+constexpr float kLikeness = 0.8f;     // k of [second]
+constexpr float kMostNoise = 10'000;  // times V_p: V_q counts for no more
 constexpr float kRidge = 1e-3f;
 constexpr float kFarthest = 4;  // features of position are cut off here: 256 pixels away
 
