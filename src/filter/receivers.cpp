@@ -17,7 +17,7 @@ namespace psf::filter {
 namespace {
 
 // Measured in README.md, "Fireflies".
-constexpr float kLevel = 4;         // its kind is at least so many times less bright
+constexpr float kOneKind = 4;       // its kind is at least so many times less bright
 constexpr std::size_t kOfKind = 4;  // R_j reaches so many others of its kind
 constexpr float kFarthest = 4;      // R_j is at most so many r_j
 constexpr float kNearest = 0.5f;    // and at least so many, but for what is dense:
@@ -28,7 +28,7 @@ constexpr float kHair = 1 + 1e-6f;  // so that the last of its kind is within R_
 constexpr std::size_t kReachGrain = 64;
 
 bool is_of_kind(float other, float y) {
-  return double{kLevel} * double{other} >= double{y};
+  return double{kOneKind} * double{other} >= double{y};
 }
 
 // t_j^2, from the squared distances of its kind; infinite where they are too few.

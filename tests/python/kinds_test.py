@@ -139,7 +139,9 @@ class Kinds(unittest.TestCase):
 
     def test_explained_fits_and_fireflies_add_up_in_volumes_too(self) -> None:
         records = {**self.records, "contribution": self.records["contribution"].copy()}
-        records["contribution"][::31] *= 60
+        # Few that are alike, since of what is bright everywhere nothing is a firefly.
+        for kind, step in ((0, 8), (1, 8), (2, 80)):
+            records["contribution"][np.flatnonzero(records["kind"] == kind)[::step]] *= 60
         path = os.path.join(self.folder.name, "bright.pvb")
         shapes = {name: (values.dtype.str[1:], 3) if values.ndim == 2 else values.dtype.str[1:]
                   for name, values in records.items()}
@@ -163,7 +165,7 @@ class Kinds(unittest.TestCase):
             volume = records["kind"][np.array(of["record"])[brings]] == 2
             self.assertTrue((volume == (kind == 2)).all(), i)
         self.assertGreater(min(fitted), 3)
-        self.assertGreater(min(given), 1)
+        self.assertGreater(min(given), 1, given)
 
     @unittest.skipUnless(os.path.exists(os.path.join(PROGRAMS, "psf-render")), "no renderer")
     def test_the_vertex_that_is_chosen_brings_its_kind(self) -> None:

@@ -181,7 +181,7 @@ TEST_CASE("A dump without photons, or a pass without, is named in one line") {
   options.more = {{"contribution.sun", &set.contribution}};
   write_dump(folder / "layers.pvb", set, options);
   CHECK_THROWS_WITH(filtered(folder / "layers.pvb", run),
-                    Catch::Matchers::ContainsSubstring("; --layers none does without them"));
+                    Catch::Matchers::ContainsSubstring("; `layers none` does without them"));
 }
 
 TEST_CASE("The memory of a plan grows with the photons of the longest block") {
